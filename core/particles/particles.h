@@ -1,0 +1,72 @@
+/* particles/particles.h -- a particle array: named property columns, structure of arrays.
+ *
+ * Real particles stand first, [0, n); their ghosts follow, [n, n + n_ghost). Each component of a
+ * column is 64-byte aligned and readable PARTICLES_PAD elements past `capacity`. Knows nothing of
+ * neighbours, scenes or physics. */
+#ifndef PARTICLES_PARTICLES_H
+#define PARTICLES_PARTICLES_H
+
+#include "base/error.h"
+#include <sph/batch.h>
+#include <sph/item.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#define PARTICLES_PAD 64
+
+struct column {
+    char *name, *unit, *doc;
+    uint32_t type;  /* SPH_SCALAR ... */
+    uint32_t ncomp; /* components in this dimension */
+    size_t size;    /* bytes of an element: 8 or 4 */
+    size_t plane;   /* elements from one component to the next */
+    bool state;     /* carried from step to step: initial, integrated or user's; saved and sorted.
+                     * Others are made anew at each evaluation. */
+    bool output;    /* goes to snapshots */
+    void *data;
+};
+
+struct particles {
+    char *name;
+    int dim;
+    size_t n, n_ghost, capacity;
+    struct column *column;
+    size_t n_column;
+    size_t arena_bytes; /* all memory held */
+    bool guarded;       /* each column on pages of its own: see particles_guard */
+};
+
+/* An empty array named `name`. Takes the name by copy. */
+int particles_init(struct particles *p, const char *name, int dim, struct error *e);
+void particles_fini(struct particles *p);
+bool particles_is_valid(const struct particles *p);
+
+/* Components of a type in a dimension, and bytes of an element. */
+uint32_t property_ncomp(uint32_t type, int dim);
+size_t property_size(uint32_t type);
+
+/* Adds a column of zeros, or checks that the one of that name has this type. Index, or -1. */
+int particles_add(struct particles *p, const char *name, const char *unit, const char *doc,
+                  uint32_t type, struct error *e);
+/* Index of a column, or -1. */
+int particles_find(const struct particles *p, const char *name);
+/* Component c of a real column, or NULL if there is no such column. */
+double *particles_real(const struct particles *p, const char *name, uint32_t c);
+
+/* Room for n + n_ghost particles; contents are kept, new elements are zero. */
+int particles_resize(struct particles *p, size_t n, size_t n_ghost, struct error *e);
+/* new[i] = old[order[i]] for all real particles, in every `state` column (others become stale). */
+int particles_permute(struct particles *p, const uint32_t *order, struct error *e);
+/* The column as the ABI hands it over. */
+sph_column particles_column(const struct particles *p, int column);
+/* Bytes of a particle over all columns. */
+size_t particles_bytes(const struct particles *p);
+
+/* The audit: with `guarded` set before any column is added, every column lives on pages of its own;
+ * particles_guard sets what may be done with it: 0 nothing, 1 read, 2 read and write. */
+int particles_guard(struct particles *p, int column, int access);
+/* The column that an address belongs to, or -1. */
+int particles_at_address(const struct particles *p, const void *address);
+
+#endif

@@ -1,0 +1,73 @@
+/* sph/batch.h -- what a plugin's loop is handed: a range of destinations, their source lists, the
+ * declared columns. One call covers thousands of pairs; never one pair. */
+#ifndef SPH_BATCH_H
+#define SPH_BATCH_H
+
+#include <sph/abi.h>
+#include <sph/host.h>
+
+SPH_BEGIN_DECLS
+
+#define SPH_F64 1u
+#define SPH_F32 2u
+#define SPH_LANES 8u /* destinations in a group */
+
+/* A column of a property, structure of arrays: component c of particle i is element
+ * c * plane + i. 64-byte aligned; at least 2 * SPH_LANES elements past the last particle may be
+ * read. What a pass writes past its last destination is lost. */
+typedef struct sph_column {
+    void *data;      /* double or float (sph_batch.real), int32_t, int64_t; NULL: not present */
+    uint64_t plane;  /* elements from one component to the next */
+    uint32_t type;   /* SPH_SCALAR ... */
+    uint32_t ncomp;  /* components in this run's dimension */
+} sph_column;
+
+/* A kernel compiled for one run: W(r, h) = h^-dim norm sum_k P_k(t_k), t_k = max(0, knot_k - q),
+ * q = r / h, P_k(t) = t^power (c[0] + c[1] t + ...); dW/dr = h^-(dim+1) norm sum_k D_k(t_k). */
+#define SPH_KERNEL_KNOTS 4u
+#define SPH_KERNEL_COEFS 6u
+typedef struct sph_kernel_piece {
+    double knot;
+    uint32_t power, n_coef;    /* of P */
+    uint32_t dpower, dn_coef;  /* of D */
+    double c[SPH_KERNEL_COEFS];
+    double d[SPH_KERNEL_COEFS];
+} sph_kernel_piece;
+typedef struct sph_kernel_form {
+    uint32_t size, dim, n_pieces, reserved;
+    double support; /* in units of h: W = 0 for r >= support h */
+    double norm;
+    sph_kernel_piece piece[SPH_KERNEL_KNOTS];
+} sph_kernel_form;
+
+typedef struct sph_batch {
+    uint32_t size, dim;
+    uint32_t real;  /* SPH_F64 or SPH_F32 */
+    uint32_t lanes; /* SPH_LANES */
+    uint64_t first, count; /* destinations [first, first + count); first is a multiple of lanes */
+    uint64_t n_dst, n_src; /* sizes of the two arrays, the source's ghosts included */
+    /* Pair functions: group g = i / lanes has sources list[begin[g]] ... list[begin[g+1] - 1].
+     * The list holds every source within reach of any lane, and some beyond: test r yourself.
+     * The destination itself is in it where the two arrays are one (see `same`). NULL otherwise. */
+    const uint64_t *begin;
+    const uint32_t *list;
+    uint32_t same;     /* 1: destination and source are the same array, so i == j is the self pair */
+    uint32_t reserved;
+    /* Position and smoothing length, over which the list was made; NULL data for point functions. */
+    sph_column x_dst, x_src, h_dst, h_src;
+    /* The declared properties, in declared order. src[k].data is NULL unless SPH_SRC_READ. */
+    const sph_column *dst, *src;
+    uint32_t n_columns, n_params;
+    const double *param; /* the declared parameters, in declared order; a choice is its index */
+    void *state;         /* of this use, from sph_life.create */
+    const sph_kernel_form *kernel; /* NULL if the scene has none */
+    double time, dt; /* of this evaluation; dt: the step being taken (0 before the first) */
+    uint64_t step;
+    const sph_host *host;
+} sph_batch;
+
+/* Works on a batch. Writes only the declared properties of its own destinations. [worker] */
+typedef sph_status (*sph_range_fn)(const sph_batch *);
+
+SPH_END_DECLS
+#endif

@@ -1,0 +1,23 @@
+/* sph/eos.h -- an equation of state: a point function on the state of a material. */
+#ifndef SPH_EOS_H
+#define SPH_EOS_H
+
+#include <sph/batch.h>
+#include <sph/item.h>
+
+SPH_BEGIN_DECLS
+
+#define SPH_KIND_EOS "sph.eos/0"
+typedef struct sph_eos {
+    uint32_t size, reserved;
+    const sph_item *item; /* props: what `run` reads (rho, u) and writes (p, cs) */
+    const sph_life *life;
+    sph_range_fn run;
+    /* The inverse, for initial states given by what `run` writes: from p and rho to u. The host
+     * uses it where a scene gives a field that run writes instead of one that it reads. */
+    sph_range_fn inverse; /* or NULL */
+    sph_list inverse_props; /* of sph_prop; columns of the inverse's batch, in this order */
+} sph_eos;
+
+SPH_END_DECLS
+#endif

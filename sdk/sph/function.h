@@ -1,0 +1,62 @@
+/* sph/function.h -- an SPH function: assignment, summation or integration of properties. */
+#ifndef SPH_FUNCTION_H
+#define SPH_FUNCTION_H
+
+#include <sph/batch.h>
+#include <sph/item.h>
+
+SPH_BEGIN_DECLS
+
+#define SPH_KIND_FUNCTION "sph.function/0"
+
+#define SPH_POINT 1u /* acts on each destination alone */
+#define SPH_PAIR 2u  /* sums over neighbours */
+
+/* Which pairs a pair function needs: r < support h_i, or r < support max(h_i, h_j). */
+#define SPH_GATHER 1u
+#define SPH_SYMMETRIC 2u
+
+/* `rate` is the time derivative of `property`; integrators act on this table alone.
+ * SPH_DRIFT: a position, advanced with its rate (a velocity, itself advanced by SPH_KICK).
+ * SPH_KICK: anything else. */
+#define SPH_KICK 1u
+#define SPH_DRIFT 2u
+typedef struct sph_rate {
+    const char *property, *rate;
+    uint32_t kind, reserved;
+} sph_rate;
+
+/* The global minimum, maximum or sum of a property over the particles (no ghosts) after the pass. */
+#define SPH_REDUCE_MIN 1u
+#define SPH_REDUCE_MAX 2u
+#define SPH_REDUCE_SUM 3u
+/* What the host does with it besides showing it. */
+#define SPH_USE_NONE 0u
+#define SPH_USE_TIME_STEP 1u /* a bound on the time step, before the scene's `cfl` */
+#define SPH_USE_INTERNAL 2u  /* a SUM of m times the property: the internal energy of the monitor */
+#define SPH_USE_POTENTIAL 3u /* likewise: the potential energy */
+typedef struct sph_reduction {
+    const char *name, *property;
+    uint32_t op, use;
+} sph_reduction;
+
+typedef struct sph_function {
+    uint32_t size;
+    uint32_t shape; /* SPH_POINT or SPH_PAIR */
+    const sph_item *item;
+    const sph_life *life;   /* or NULL */
+    sph_range_fn before;    /* per destination, before the sweeps; or NULL */
+    sph_range_fn run;       /* the point function, or the sweep over one source array */
+    sph_range_fn after;     /* per destination, after all sweeps; or NULL */
+    uint32_t reach;         /* pair: SPH_GATHER or SPH_SYMMETRIC */
+    uint32_t max_sweeps;    /* > 0: the pass iterates, at most so often; see `unfinished` */
+    const char *unfinished; /* a written SPH_INT32 property: 1 asks for another sweep of its group.
+                             * The pass must leave finished destinations as they are. */
+    double reach_scale;     /* times the kernel's support; 1 */
+    sph_list rates;         /* of sph_rate */
+    sph_list reductions;    /* of sph_reduction */
+    const char *device_body; /* text of the pair body for a device, or NULL */
+} sph_function;
+
+SPH_END_DECLS
+#endif

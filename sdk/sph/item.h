@@ -1,0 +1,61 @@
+/* sph/item.h -- what every registered thing says of itself: names, source, parameters, and the
+ * particle properties it touches. From these declarations alone the host allocates columns, orders
+ * passes, derives ghost exchanges and prints `sph info`. */
+#ifndef SPH_ITEM_H
+#define SPH_ITEM_H
+
+#include <sph/abi.h>
+
+SPH_BEGIN_DECLS
+
+/* Types of a property. A real is double or float, the host's choice (see sph_batch.real). */
+#define SPH_SCALAR 1u /* one real */
+#define SPH_VECTOR 2u /* dim reals; a mirror side flips the component along its normal */
+#define SPH_SYM 3u    /* symmetric tensor, dim (dim + 1) / 2 reals: xx, xy, xz, yy, yz, zz as present */
+#define SPH_MATRIX 4u /* dim * dim reals, row by row: component [a][b] is plane a * dim + b */
+#define SPH_INT32 5u  /* one int32_t */
+#define SPH_INT64 6u  /* one int64_t */
+
+/* Access to a property. A pass reaches only what it declares; a debug run traps the rest. */
+#define SPH_DST_READ 0x01u  /* reads the destination's value */
+#define SPH_SRC_READ 0x02u  /* reads the sources' values: the host refreshes their ghosts first */
+#define SPH_DST_WRITE 0x04u /* sets the destination's value, every destination, each time */
+#define SPH_DST_SUM 0x08u   /* adds to it: the host sets it to `start` before the first source */
+#define SPH_DST_MAX 0x10u   /* takes the maximum; starts as above */
+#define SPH_DST_MIN 0x20u   /* takes the minimum; starts as above */
+#define SPH_DST_UPDATE (SPH_DST_READ | SPH_DST_WRITE)
+
+typedef struct sph_prop {
+    const char *name; /* "rho" */
+    const char *unit; /* "kg/m^d", in SI terms; "" for a pure number */
+    const char *doc;
+    uint32_t type;   /* SPH_SCALAR ... */
+    uint32_t access; /* SPH_DST_READ | ... */
+    double start;    /* of an accumulated property; default 0 */
+} sph_prop;
+
+/* A user's parameter. The host parses, range-checks, documents and prints it. */
+typedef struct sph_param {
+    const char *name, *unit, *doc;
+    double def;      /* default; NaN: mandatory. For a choice: the index of the default */
+    double min, max; /* inclusive; min > max: unbounded */
+    const char *choices; /* "exact|hllc": the value is a word, handed on as its index; else NULL */
+} sph_param;
+
+typedef struct sph_item {
+    uint32_t size;
+    uint32_t dims;      /* bit d set: works in d dimensions */
+    const char *name;   /* what a scene writes: "gsph-rates"; [a-z0-9-], unique within its kind */
+    const char *doc;    /* one sentence */
+    const char *source; /* paper, equation; or "" */
+    sph_list params;    /* of sph_param */
+    sph_list props;     /* of sph_prop, in the order in which a batch hands the columns over */
+} sph_item;
+
+#define SPH_DIM1 0x2u
+#define SPH_DIM2 0x4u
+#define SPH_DIM3 0x8u
+#define SPH_ALL_DIMS (SPH_DIM1 | SPH_DIM2 | SPH_DIM3)
+
+SPH_END_DECLS
+#endif

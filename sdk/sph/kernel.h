@@ -1,0 +1,25 @@
+/* sph/kernel.h -- a smoothing kernel as data: a sum of clamped powers of q = r / h.
+ *   W(r, h) = norm[dim] h^-dim  sum_k coef_k max(0, knot_k - q)^power_k
+ * Every spline and Wendland function has this form. The host checks that it integrates to 1. */
+#ifndef SPH_KERNEL_H
+#define SPH_KERNEL_H
+
+#include <sph/item.h>
+
+SPH_BEGIN_DECLS
+
+#define SPH_KIND_KERNEL "sph.kernel/0"
+typedef struct sph_kernel_term {
+    double coef, knot;
+    uint32_t power, reserved; /* power >= 1 */
+} sph_kernel_term;
+typedef struct sph_kernel {
+    uint32_t size, reserved;
+    const sph_item *item;
+    double support; /* in units of h; the largest knot */
+    double norm[4]; /* norm[dim]; norm[0] unused; 0 where a dimension is not supported */
+    sph_list terms[4]; /* of sph_kernel_term, by dimension (they may be one list); [0] unused */
+} sph_kernel;
+
+SPH_END_DECLS
+#endif

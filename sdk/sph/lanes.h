@@ -1,0 +1,108 @@
+/* sph/lanes.h -- the words in which a pair body is written: R (a real in every lane), B (a mask), and
+ * functions on them. Included by pair-loop.h once for each instruction set, with SPH_ISA (a suffix)
+ * and SPH_WIDTH (lanes of a vector) defined; the same words mean OpenCL vectors on a device.
+ *
+ *   R a = sph_num(0.5);              a constant in every lane (a * 0.5 needs none)
+ *   a + b, a * b, a / b, -a          as ever;  a < b, a >= b ... give a B;  m & n, m | n, ~m
+ *   sph_select(m, a, b)              a where m holds, else b
+ *   sph_min, sph_max, sph_abs, sph_sqrt, sph_pow(a, b), sph_sign(a) (-1, 0, 1)
+ *   sph_w(K, q), sph_dw(K, q)        kernel and its derivative in q = r / h, without powers of h
+ *   sph_ipow(a, DIM)                 a small whole power
+ * No branches on lanes, no calls to anything else. */
+
+#define SPH_CAT2(a, b) a##_##b
+#define SPH_CAT(a, b) SPH_CAT2(a, b)
+#define SPH_OF_ISA(name) SPH_CAT(name, SPH_ISA)
+#define SPH_INLINE static inline __attribute__((always_inline, unused))
+
+#define R SPH_OF_ISA(sph_lanes)
+#define B SPH_OF_ISA(sph_mask)
+
+typedef double R __attribute__((vector_size(8 * SPH_WIDTH), aligned(8)));
+typedef long long B __attribute__((vector_size(8 * SPH_WIDTH), aligned(8)));
+
+SPH_INLINE R SPH_OF_ISA(sph_num_)(double a)
+{
+    return (R){0} + a;
+}
+
+SPH_INLINE R SPH_OF_ISA(sph_select_)(B m, R a, R b)
+{
+    return (R)((m & (B)a) | (~m & (B)b));
+}
+
+SPH_INLINE R SPH_OF_ISA(sph_load_)(const double *p)
+{
+    return *(const R *)(const void *)p;
+}
+
+SPH_INLINE R SPH_OF_ISA(sph_sqrt_)(R a)
+{
+    R out;
+    for (int l = 0; l < SPH_WIDTH; l++)
+        out[l] = __builtin_sqrt(a[l]);
+    return out;
+}
+
+/* libm lane by lane: right to its own rounding, and slow; for bodies that cannot do without. */
+SPH_INLINE R SPH_OF_ISA(sph_pow_)(R a, R b)
+{
+    R out;
+    for (int l = 0; l < SPH_WIDTH; l++)
+        out[l] = __builtin_pow(a[l], b[l]);
+    return out;
+}
+
+SPH_INLINE R SPH_OF_ISA(sph_ipow_)(R a, uint32_t n)
+{
+    /* n is at most 15 and the same for every lane: four predictable branches. */
+    R out = (n & 1u) ? a : (R){0} + 1.0;
+    a *= a;
+    if (n & 2u)
+        out *= a;
+    a *= a;
+    if (n & 4u)
+        out *= a;
+    a *= a;
+    if (n & 8u)
+        out *= a;
+    return out;
+}
+
+SPH_INLINE R SPH_OF_ISA(sph_sum_of_powers_)(R t, uint32_t power, uint32_t n, const double *c)
+{
+    R sum = (R){0} + c[n - 1];
+    for (uint32_t k = n - 1; k-- > 0;)
+        sum = sum * t + c[k];
+    return sum * SPH_OF_ISA(sph_ipow_)(t, power);
+}
+
+SPH_INLINE R SPH_OF_ISA(sph_w_)(const sph_kernel_form *kernel, R q)
+{
+    R sum = {0};
+    for (uint32_t k = 0; k < kernel->n_pieces; k++) {
+        const sph_kernel_piece *p = &kernel->piece[k];
+        R t = p->knot - q;
+        t = SPH_OF_ISA(sph_select_)((B)(t > (R){0}), t, (R){0});
+        sum += SPH_OF_ISA(sph_sum_of_powers_)(t, p->power, p->n_coef, p->c);
+    }
+    return sum * kernel->norm;
+}
+
+SPH_INLINE R SPH_OF_ISA(sph_dw_)(const sph_kernel_form *kernel, R q)
+{
+    R sum = {0};
+    for (uint32_t k = 0; k < kernel->n_pieces; k++) {
+        const sph_kernel_piece *p = &kernel->piece[k];
+        R t = p->knot - q;
+        B in = (B)(t > (R){0});
+        t = SPH_OF_ISA(sph_select_)(in, t, (R){0});
+        R d = SPH_OF_ISA(sph_sum_of_powers_)(t, p->dpower, p->dn_coef, p->d);
+        /* A derivative of power 0 does not vanish by itself past its knot. */
+        sum += SPH_OF_ISA(sph_select_)(in, d, (R){0});
+    }
+    return sum * kernel->norm;
+}
+
+#undef R
+#undef B

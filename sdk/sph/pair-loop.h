@@ -1,0 +1,142 @@
+/* sph/pair-loop.h -- expands a plugin's pair body into the loops of a sweep: for one, two and three
+ * dimensions and for each instruction set, vectorised over the destinations of a group, the sources
+ * broadcast. Define, then include this (as often as there are sweeps in a file):
+ *
+ *   #define SPH_LOOP my_sweep                 name of the sph_range_fn that is made (static)
+ *   #define SPH_LOOP_I(S, V, M) S(rho, 2)     destination values: rho_i from declared property 2;
+ *                                             V: vectors v_i[DIM]; M: matrices g_i[DIM * DIM]
+ *   #define SPH_LOOP_J(S, V, M) S(m, 3)       source values: m_j, the same in every lane
+ *   #define SPH_LOOP_SUM(S, V, M) S(s, 4)     accumulators s (scalar), a[DIM], g[DIM * DIM]: they
+ *                                             start at 0 and are added to declared property 4
+ *   #define SPH_LOOP_MIN(S) S(dt, 5)          likewise by minimum; SPH_LOOP_MAX by maximum
+ *   #define SPH_LOOP_PARAM(P) P(alpha, 0)     parameter 0 as a double named alpha
+ *   #define SPH_LOOP_REACH SPH_SYMMETRIC      or SPH_GATHER
+ *   #define SPH_LOOP_SELF 1                   1: the body also gets the self pair (r = 0)
+ *   #define SPH_LOOP_BODY "my_sweep.body.h"   the body, found by the include path
+ *   #include <sph/pair-loop.h>
+ *
+ * Leave out the lists that are not needed. Within the body there are besides:
+ *   DIM; dx[DIM] = x_i - x_j; r2, r, rinv (1 / r, 0 for the self pair); h_i, hinv_i, h_j, hinv_j;
+ *   K, the kernel; in, the mask of lanes that are within reach; sph_add(acc, value),
+ *   sph_take_min(acc, value), sph_take_max(acc, value), which touch those lanes only: a body may
+ *   give NaN in the others; b, the batch (b->time, b->dt). See lanes.h for the words.
+ * The kernel's argument is r * hinv; W(r, h) = sph_ipow(hinv, DIM) * sph_w(K, r * hinv). */
+
+#include <math.h>
+#include <sph/batch.h>
+#include <sph/function.h>
+#include <sph/item.h>
+
+#ifndef SPH_LOOP_I
+#define SPH_LOOP_I(S, V, M)
+#endif
+#ifndef SPH_LOOP_J
+#define SPH_LOOP_J(S, V, M)
+#endif
+#ifndef SPH_LOOP_SUM
+#define SPH_LOOP_SUM(S, V, M)
+#endif
+#ifndef SPH_LOOP_MIN
+#define SPH_LOOP_MIN(S)
+#endif
+#ifndef SPH_LOOP_MAX
+#define SPH_LOOP_MAX(S)
+#endif
+#ifndef SPH_LOOP_PARAM
+#define SPH_LOOP_PARAM(P)
+#endif
+#ifndef SPH_LOOP_REACH
+#define SPH_LOOP_REACH SPH_SYMMETRIC
+#endif
+#ifndef SPH_LOOP_SELF
+#define SPH_LOOP_SELF 0
+#endif
+
+/* The plain set: what every processor of the architecture has (on x86-64: SSE2, two lanes). */
+#define SPH_ISA base
+#define SPH_WIDTH 2
+#ifndef SPH_LANES_base
+#define SPH_LANES_base
+#include <sph/lanes.h>
+#endif
+#include <sph/pair-dims.h>
+#undef SPH_ISA
+#undef SPH_WIDTH
+
+#if defined(__x86_64__) && !defined(SPH_NO_MULTIVERSION)
+
+#define SPH_ISA avx2
+#define SPH_WIDTH 4
+#if defined(__clang__)
+#pragma clang attribute push(__attribute__((target("avx2,fma,bmi,bmi2"))), apply_to = function)
+#else
+#pragma GCC push_options
+#pragma GCC target("avx2,fma,bmi,bmi2")
+#endif
+#ifndef SPH_LANES_avx2
+#define SPH_LANES_avx2
+#include <sph/lanes.h>
+#endif
+#include <sph/pair-dims.h>
+#if defined(__clang__)
+#pragma clang attribute pop
+#else
+#pragma GCC pop_options
+#endif
+#undef SPH_ISA
+#undef SPH_WIDTH
+
+#define SPH_ISA avx512
+#define SPH_WIDTH 8
+#if defined(__clang__)
+#pragma clang attribute push(                                                                      \
+    __attribute__((target("avx2,fma,bmi,bmi2,avx512f,avx512vl,avx512dq,avx512bw"))),               \
+    apply_to = function)
+#else
+#pragma GCC push_options
+#pragma GCC target("avx2,fma,bmi,bmi2,avx512f,avx512vl,avx512dq,avx512bw")
+#endif
+#ifndef SPH_LANES_avx512
+#define SPH_LANES_avx512
+#include <sph/lanes.h>
+#endif
+#include <sph/pair-dims.h>
+#if defined(__clang__)
+#pragma clang attribute pop
+#else
+#pragma GCC pop_options
+#endif
+#undef SPH_ISA
+#undef SPH_WIDTH
+
+#endif
+
+static sph_status SPH_LOOP(const sph_batch *b)
+{
+    typedef sph_status (*loop)(const sph_batch *);
+    static const loop base[4] = {NULL, SPH_CAT(SPH_LOOP, base_1), SPH_CAT(SPH_LOOP, base_2),
+                                 SPH_CAT(SPH_LOOP, base_3)};
+#if defined(__x86_64__) && !defined(SPH_NO_MULTIVERSION)
+    static const loop avx2[4] = {NULL, SPH_CAT(SPH_LOOP, avx2_1), SPH_CAT(SPH_LOOP, avx2_2),
+                                 SPH_CAT(SPH_LOOP, avx2_3)};
+    static const loop avx512[4] = {NULL, SPH_CAT(SPH_LOOP, avx512_1), SPH_CAT(SPH_LOOP, avx512_2),
+                                   SPH_CAT(SPH_LOOP, avx512_3)};
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw"))
+        return avx512[b->dim](b);
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+        return avx2[b->dim](b);
+#endif
+    return base[b->dim](b);
+}
+
+#undef SPH_LOOP
+#undef SPH_LOOP_I
+#undef SPH_LOOP_J
+#undef SPH_LOOP_SUM
+#undef SPH_LOOP_MIN
+#undef SPH_LOOP_MAX
+#undef SPH_LOOP_PARAM
+#undef SPH_LOOP_REACH
+#undef SPH_LOOP_SELF
+#undef SPH_LOOP_BODY

@@ -1,0 +1,40 @@
+/* sph/plugin.h -- the plugin's descriptor and its one exported function; includes all of the ABI. */
+#ifndef SPH_PLUGIN_H
+#define SPH_PLUGIN_H
+
+#include <sph/batch.h>
+#include <sph/boundary.h>
+#include <sph/eos.h>
+#include <sph/exact.h>
+#include <sph/function.h>
+#include <sph/host.h>
+#include <sph/kernel.h>
+#include <sph/scheme.h>
+
+SPH_BEGIN_DECLS
+
+#define SPH_PLUGIN_MAGIC 0x4c504853u /* "SHPL" */
+
+typedef struct sph_plugin {
+    uint32_t size, magic, abi_major, abi_minor; /* checked before any other code of the plugin runs */
+    const char *name, *version, *license, *doc;
+    /* Registers, nothing else: no files, no devices, no MPI, no output. [main] */
+    sph_status (*init)(const sph_host *);
+    void (*fini)(const sph_host *); /* or NULL. [main] */
+} sph_plugin;
+
+/* The only symbol that a plugin exports. A function, so that any loader finds it. */
+SPH_EXPORT const sph_plugin *sph_plugin_entry(void);
+typedef const sph_plugin *(*sph_plugin_entry_fn)(void);
+
+#define SPH_PLUGIN(name, version, license, doc, init, fini)                                        \
+    SPH_EXPORT const sph_plugin *sph_plugin_entry(void)                                            \
+    {                                                                                              \
+        static const sph_plugin plugin = {                                                         \
+            (uint32_t)sizeof(sph_plugin), SPH_PLUGIN_MAGIC, SPH_ABI_MAJOR, SPH_ABI_MINOR,          \
+            (name), (version), (license), (doc), (init), (fini)};                                  \
+        return &plugin;                                                                            \
+    }
+
+SPH_END_DECLS
+#endif

@@ -1,0 +1,22 @@
+/* sph/scheme.h -- a scheme: a recipe of operations, which a scene may edit. A parameter set on the
+ * scheme reaches every step whose function declares that name. */
+#ifndef SPH_SCHEME_H
+#define SPH_SCHEME_H
+
+#include <sph/boundary.h>
+
+SPH_BEGIN_DECLS
+
+#define SPH_KIND_SCHEME "sph.scheme/0"
+typedef struct sph_scheme {
+    uint32_t size, reserved;
+    const sph_item *item;   /* params: none of its own; props: none */
+    const char *kernel;     /* default kernel, by name */
+    const char *integrator; /* default integrator, by name */
+    double cfl;             /* default time-step number */
+    sph_list steps;         /* of sph_step, in order */
+    sph_list rates;         /* of sph_rate: those no function declares, x by v among them */
+} sph_scheme;
+
+SPH_END_DECLS
+#endif

@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
 
@@ -16,19 +17,38 @@ struct log_row {
     const char *const *extra_name;
     const double *extra;
     uint64_t n_extra;
-    double wall;
+    double wall; /* [s] since the start */
 };
 
-struct log { FILE *file; char *path; bool header_done; int dim; };
+/* The file grows by a row at a time, straight under its name: it can be watched. A row that cannot be
+ * written whole (disk full) is an error and is taken back, so that the file ends with a good one. */
+struct log {
+    FILE *file;
+    char *path;
+    bool header_done;
+    int dim;
+    long good; /* bytes known to be on disk, whole rows */
+};
 int log_open(struct log *l, const char *path, int dim, struct error *e);
+/* Columns: step, time, dt, kinetic, internal, potential, momentum_x ..., angular_z (2D) or angular_x
+ * ... (3D), mass, the extras by name, wall_s. The extras are those of the first row. */
 int log_write(struct log *l, const struct log_row *row, struct error *e);
+/* Syncs and closes. Nothing on a log that was never opened and is zeros. */
 int log_close(struct log *l, struct error *e);
 
-/* Progress on stderr if it is a terminal: step, time, dt, energy drift, ETA, one line rewritten at most ten
- * times a second; nothing in a pipe. */
-struct progress { bool on; double begin, end; double started, shown; };
+/* Progress on stderr if it is a terminal: step, time, dt, energy drift, ETA, one line rewritten at
+ * most ten times a second; nothing in a pipe. */
+struct progress {
+    bool on;
+    double begin, end;     /* of the run's time */
+    double started, shown; /* [s] of a monotonic clock */
+};
 void progress_start(struct progress *p, bool wanted, double begin, double end);
 void progress_show(struct progress *p, uint64_t step, double time, double dt, double drift);
+/* Wipes the line. */
 void progress_end(struct progress *p);
+/* The line as it is shown, for `elapsed` seconds so far. Returns out. */
+const char *progress_line(char *out, size_t size, const struct progress *p, uint64_t step, double time,
+                          double dt, double drift, double elapsed);
 
 #endif

@@ -12,16 +12,39 @@ struct output {
 };
 
 /* Makes the folder (and parents) if need be, claims it (a lock file: two runs never share one) and
- * removes the results of an earlier run there only if they are ours (snapshot_*.vtkhdf, log.csv,
- * summary.json, *.png of earlier runs); other files stay. Errors: not a folder, not writable, in use (by which process). */
+ * removes the results of an earlier run there, only if they are ours (snapshot_*.vtkhdf, log.csv,
+ * summary.json and pictures that say that they are ours); other files stay. A log.csv or
+ * summary.json that is not ours is an error: the run would overwrite it. Errors: not a folder, not
+ * writable, in use (by which process). */
 int output_open(struct output *o, const char *dir, struct error *e);
+/* The two halves of it: a run that resumes claims and does not clear. */
+int output_claim(struct output *o, const char *dir, struct error *e);
+int output_clear(const struct output *o, struct error *e);
+/* Gives the claim back. Nothing on an `o` that was never opened and is zeros. */
 void output_close(struct output *o);
-/* "DIR/name" into fresh memory. */
+/* "DIR/name" into fresh memory; NULL when out of memory. */
 char *output_path(const struct output *o, const char *name);
+
 /* Writes a small file whole: aside, synced, renamed. */
-int output_write(const struct output *o, const char *name, const char *text, size_t n, struct error *e);
-/* The same steps for a file that a library writes: a temporary path to write to, then the rename. */
+int output_write(const struct output *o, const char *name, const char *text, size_t n,
+                 struct error *e);
+/* The same steps for a file that a library writes: a temporary path to write to (fresh memory, NULL
+ * when out of memory), then the rename. Commit removes the temporary when it fails; the caller frees
+ * the string in any case, or drops both when the library failed. */
 char *output_begin(const struct output *o, const char *name);
 int output_commit(const struct output *o, const char *temporary, const char *name, struct error *e);
+void output_drop(char *temporary);
+/* What such a temporary is to become, or what another path is: for messages. Fresh memory. */
+char *output_shown(const char *path);
+
+/* The same for any path, claimed or not: aside in the same folder, synced, renamed. A path that is
+ * there and no regular file (a device, a pipe) is written to directly. */
+int output_write_path(const char *path, const void *data, size_t n, struct error *e);
+
+/* In every PNG of ours, so that a later run knows which pictures it may remove. */
+#define OUTPUT_PNG_KEY "Software"
+#define OUTPUT_PNG_MARK "sph"
+/* First cells of every log.csv of ours. */
+#define OUTPUT_LOG_MARK "step,time,dt,"
 
 #endif

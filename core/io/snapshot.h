@@ -15,23 +15,42 @@ struct snapshot_meta {
 
 /* Writes all arrays into one file: columns by plain name (vectors as 3 components; tensors flat), an
  * `array` column (index) and field data that names them; a column that an array lacks is NaN (or -1
- * for integers) there. Ghosts are left out. */
-int snapshot_write(const char *path, const struct particles *arrays, size_t n, const struct snapshot_meta *meta, struct error *e);
+ * for integers) there. The positions, column "x", are the points and stand there only. Columns
+ * without `output` and ghosts are left out. When it fails, disk full included, the file is removed;
+ * a caller who keeps the final name clean writes aside (io/output.h).
+ *
+ * Beside what VTK asks for: attributes `unit`, `doc` (and `components` of tensors) on every column
+ * and on Points; `title`, `units`, `version`, `dimensions`, `time`, `step` on the file; TimeValue,
+ * Time, Step, array_names, array_sizes, title, units, version and scene as field data. */
+int snapshot_write(const char *path, const struct particles *arrays, size_t n,
+                   const struct snapshot_meta *meta, struct error *e);
 
-/* A column of a snapshot read back: for `sph render` and for scenes that start from a file. */
+struct snapshot_column {
+    char *name, *unit, *doc; /* unit and doc may be "" */
+    uint32_t ncomp;
+    double *value; /* [n * ncomp], interleaved */
+};
+
+/* A snapshot read back: for `sph render` and for scenes that start from a file. */
 struct snapshot {
-    int dim;
+    int dim; /* of a file that does not say: by the extent of its points */
     double time;
     uint64_t step;
-    char *title, *scene_text;
+    char *title, *units, *scene_text; /* "" if the file does not say */
     size_t n, n_array;
     char **array_name;
-    int32_t *array;       /* [n] */
+    int32_t *array; /* [n], within [0, n_array) */
     size_t n_column;
-    struct snapshot_column { char *name, *unit; uint32_t ncomp; double *value; /* [n * ncomp], interleaved */ } *column;
-    double *x;            /* [3 n] */
+    struct snapshot_column *column;
+    double *x;    /* [3 n] */
+    char *x_unit; /* may be "" */
 };
+
+/* Reads a snapshot of ours, or any VTKHDF file of an unstructured grid. Numbers become doubles;
+ * columns that are no numbers are passed over. A damaged or foreign file is an error. */
 int snapshot_read(struct snapshot *s, const char *path, struct error *e);
 void snapshot_free(struct snapshot *s);
+/* The column of that name, or NULL. */
+const struct snapshot_column *snapshot_find(const struct snapshot *s, const char *name);
 
 #endif

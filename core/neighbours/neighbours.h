@@ -28,6 +28,7 @@ struct group_list {
     uint32_t *source;
     size_t n_group, capacity, group_capacity;
     bool symmetric;
+    uint64_t pairs;      /* directed pairs within reach (no skin) when it was made, self included */
     uint64_t candidates; /* distances computed while making it */
 };
 

@@ -3,15 +3,22 @@
 #define SCENE_EXPRESSION_H
 
 #include "base/error.h"
+#include <stdbool.h>
 #include <stddef.h>
+
+#define EXPRESSION_BYTES 4000
 
 struct expression;
 
-/* Compiles `text` with variables named names[0..n). "&", "|" are and, or; "?:" works. On error the
+/* Compiles `text` with variables named names[0..n). Beside muparser's own operators and functions:
+ * "&" and "|" are and, or; "!" is not; "?:" works; "pi" is known; "=" is refused. On error the
  * sentence quotes the text and the column in it. */
-int expression_new(struct expression **out, const char *text, const char *const *names, size_t n, struct error *e);
+int expression_new(struct expression **out, const char *text, const char *const *names, size_t n,
+                   struct error *e);
 void expression_free(struct expression *x);
-/* Value at the given variables. [one thread per expression] */
+/* Value at the given variables; NaN if it has none. [one thread per expression] */
 double expression_at(struct expression *x, const double *values);
+/* Whether the expression names variable i. */
+bool expression_uses(const struct expression *x, size_t i);
 
 #endif

@@ -9,11 +9,15 @@
 #include "scene/shape.h"
 #include <stdint.h>
 
+/* Particles that a scene may make; more needs "limits": guards against 10^9 by a slip of the pen. */
+#define FILL_LIMIT 200000000ull
+
 struct scene_material {
     const char *name;
     const cJSON *node;
     const char *eos;         /* its name, or NULL: the material has none */
-    const cJSON *eos_node;   /* object: "name" and the parameters */
+    const cJSON *eos_node;   /* for messages: the object with "name", or the bare name */
+    const cJSON *eos_params; /* object: the parameters alone; NULL if eos is NULL */
 };
 
 /* An initial field: one expression or number per component (a scalar has one). */
@@ -30,19 +34,27 @@ struct scene_column {
 };
 
 enum fill_kind { FILL_LATTICE, FILL_GLASS, FILL_FILE };
-enum lattice { LATTICE_SQUARE, LATTICE_HEXAGONAL, LATTICE_BCC, LATTICE_FCC }; /* square: cubic in 3D */
+/* square: cubic in 3D; hexagonal: hexagonal close packing in 3D */
+enum lattice { LATTICE_SQUARE, LATTICE_HEXAGONAL, LATTICE_BCC, LATTICE_FCC };
 
+/* Exactly one of spacing, count and mass is given for a lattice or a glass. */
 struct scene_fill {
     const cJSON *node;
     enum fill_kind kind;
     enum lattice lattice;
     struct shape *shape;      /* inside which particles are put; NULL: the domain */
-    double spacing;           /* lattice spacing: volume per particle is spacing^dim for all lattices */
-    uint64_t count;           /* alternatively: about so many particles (exactly, for a glass); 0: not given */
-    double mass;              /* > 0: equal-mass fill: spacing follows the "rho" field by region */
-    uint64_t seed;            /* glass and jitter */
-    double jitter;            /* in units of the spacing */
-    const char *file;         /* FILL_FILE: CSV with named columns, or HDF5/VTKHDF */
+    double spacing;           /* lattice spacing: volume per particle is spacing^dim for all lattices;
+                               * 0: not given. Fitted so that whole cells fill the shape's bounds */
+    uint64_t count;           /* about so many particles (exactly, for a glass); 0: not given */
+    double mass;              /* > 0: equal-mass fill: the spacing follows from "rho"; 0: not given */
+    uint64_t seed;            /* glass and jitter; default 1 */
+    double jitter;            /* in units of the spacing; default 0 */
+    uint64_t sweeps;          /* glass: at most so many sweeps of relaxation; default 1000 */
+    double noise;             /* glass: stop at this rms density noise; default 0.01 */
+    const char *file;         /* FILL_FILE: CSV with named columns, or HDF5/VTKHDF; relative to the
+                               * scene's folder */
+    const char *file_array;   /* of a snapshot: this array only; NULL: all */
+    const cJSON *rename;      /* object: the file's name of a column -> ours; or NULL */
 };
 
 struct scene_array {
@@ -67,13 +79,14 @@ struct scene_edit {
     const cJSON *node;
     enum edit_kind kind;
     const char *anchor;       /* name of the step it acts on; NULL for append */
-    const char *operation;    /* "assignment", "summation", "integration"; NULL for delete */
-    const char *function;     /* name of a function, "eos", or an expression's target below */
+    const char *operation;    /* "assignment", "summation", "integration"; NULL: as the function is */
+    const char *function;     /* name of a function or "eos"; NULL for delete and with an expression */
+    const char *expression;   /* of the particle's own scalars, assigned to `of`; NULL: a function */
     const char *of;           /* the property that it sets, sums or integrates; checked by the plan */
     const char *at;           /* "start", "evaluate" (default), "finish" */
     const char **to, **from;  /* arrays; NULL: all */
     size_t n_to, n_from;
-    const cJSON *params;      /* object, or NULL */
+    const cJSON *params;      /* object: the members that are none of the above */
 };
 
 struct scene_compare {
@@ -97,18 +110,27 @@ struct scene_probe {
     double expected;          /* NaN: none */
 };
 
+struct scene_memory; /* what the structures stand in: private to scene.c */
+
 struct scene {
     struct document *doc;     /* not owned; outlives the scene */
-    const char *title;
+    struct scene_memory *memory;
+    const char *title;        /* "" if not given */
     int dim;
     const char **plugin;
     size_t n_plugin;
-    const char *units;        /* "none", "SI", "cgs", ... */
+    const char *units;        /* "none", "SI", "cgs" */
+    uint64_t limit;           /* particles that the scene may make: "limits": {"particles": ..} */
     struct box box;
     struct scene_material *material; size_t n_material;
     struct scene_array *array; size_t n_array;
     const cJSON *boundaries;  /* array or NULL; resolved by the plan */
-    struct { const cJSON *node; const char *name; struct scene_edit *edit; size_t n_edit; } scheme;
+    struct {
+        const cJSON *node;
+        const char *name;
+        const cJSON *params;  /* object: the members that are neither "name" nor "edit" */
+        struct scene_edit *edit; size_t n_edit;
+    } scheme;
     struct { const cJSON *node; const char *name; } kernel; /* name NULL: the scheme's */
     struct {
         const cJSON *node;
@@ -131,10 +153,16 @@ struct scene {
     } output;
 };
 
-/* Compiles the document. Every error is EXIT_USAGE with its place. */
+/* Compiles the document. Every error is EXIT_USAGE with its place; then nothing is to be freed. */
 int scene_compile(struct scene *s, struct document *d, struct error *e);
 void scene_free(struct scene *s);
 
-/* The scheme's own parameter members (those that are not "name" and "edit") are handed to the plan as nodes. */
+/* The variables of regions ("where") and initial fields, in this order; a component that the scene's
+ * dimension lacks is 0, r is the distance from the origin and never quite 0, so that x/r is 0 there. */
+#define SCENE_VARIABLES 5
+extern const char *const scene_variables[SCENE_VARIABLES]; /* x, y, z, r, spacing */
+/* Regions know only the first four. */
+#define SCENE_REGION_VARIABLES 4
+void scene_values(const double *x, int dim, double spacing, double values[SCENE_VARIABLES]);
 
 #endif

@@ -9,14 +9,17 @@
 
 struct shape;
 
-/* From {"box": {"min": [..], "max": [..]}}, {"sphere": {"center": [..], "radius": r}},
- * {"cylinder": {"center": [..], "axis": [..], "radius": r, "length": l}} (3D), {"half-space": {"point": [..], "normal": [..]}},
- * {"union": [..]}, {"intersection": [..]}, {"difference": [a, b, ...]}. */
-int shape_compile(struct shape **out, const struct document *d, const cJSON *node, int dim, struct error *e);
+/* From {"box": {"min": [..], "max": [..]}}, {"sphere": {"center": [..], "radius": r}} (a disc in 2D, an
+ * interval in 1D), {"cylinder": {"center": [..], "axis": [..], "radius": r, "length": l}} (3D),
+ * {"half-space": {"point": [..], "normal": [..]}} (the normal points out of it), {"union": [..]},
+ * {"intersection": [..]}, {"difference": [a, b, ...]}. */
+int shape_compile(struct shape **out, const struct document *d, const cJSON *node, int dim,
+                  struct error *e);
 void shape_free(struct shape *s);
 /* Lower faces belong to it, upper do not, so that boxes side by side share no point. */
 bool shape_inside(const struct shape *s, const double x[3]);
-/* Bounds; false if it is unbounded (the caller intersects with the domain). */
+/* Bounds (infinite where there are none); false if it is unbounded (the caller intersects with the
+ * domain). */
 bool shape_bounds(const struct shape *s, double min[3], double max[3]);
 
 #endif

@@ -31,7 +31,8 @@ typedef struct sph_prop {
     const char *doc;
     uint32_t type;   /* SPH_SCALAR ... */
     uint32_t access; /* SPH_DST_READ | ... */
-    double start;    /* of an accumulated property; default 0 */
+    double start;    /* of an accumulated property; else the initial value of one that is carried from
+                      * step to step where a scene gives none (NaN: it must). Default 0 */
 } sph_prop;
 
 /* A user's parameter. The host parses, range-checks, documents and prints it. */

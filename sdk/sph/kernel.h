@@ -1,6 +1,8 @@
 /* sph/kernel.h -- a smoothing kernel as data: a sum of clamped powers of q = r / h.
  *   W(r, h) = norm[dim] h^-dim  sum_k coef_k max(0, knot_k - q)^power_k
- * Every spline and Wendland function has this form. The host checks that it integrates to 1. */
+ * Every spline and Wendland function has this form. The host checks that it integrates to 1, to
+ * 1e-10. At most SPH_KERNEL_KNOTS (4) different knots, each with powers that span at most
+ * SPH_KERNEL_COEFS (6). */
 #ifndef SPH_KERNEL_H
 #define SPH_KERNEL_H
 
@@ -11,7 +13,7 @@ SPH_BEGIN_DECLS
 #define SPH_KIND_KERNEL "sph.kernel/0"
 typedef struct sph_kernel_term {
     double coef, knot;
-    uint32_t power, reserved; /* power >= 1 */
+    uint32_t power, reserved; /* power >= 2: the derivative must not jump */
 } sph_kernel_term;
 typedef struct sph_kernel {
     uint32_t size, reserved;

@@ -1,0 +1,180 @@
+/* cli/run.c -- `sph [run] SCENE`: a scene from file to results. */
+#include "cli/cli.h"
+#include "cli/scene_options.h"
+#include "domain/ranks.h"
+#include "run/loop.h"
+#include <errno.h>
+#include <math.h>
+#include <omp.h>
+#include <signal.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const struct argp_child children[] = {{&scene_argp, 0, NULL, 0}, {0}};
+
+enum { KEY_OUT = 'o', KEY_THREADS = 't', KEY_QUIET = 'q', KEY_VERBOSE = 'v', KEY_UNTIL = 256, KEY_STEPS,
+       KEY_DEVICE, KEY_PRECISION, KEY_DRY, KEY_AUDIT, KEY_STRICT };
+
+static const struct argp_option options[] = {
+    {"out", KEY_OUT, "DIR", 0, "Folder for the results (default: the scene's name, here)", 0},
+    {"threads", KEY_THREADS, "N", 0, "Threads (default: the processors there are); the results are the same", 0},
+    {"until", KEY_UNTIL, "T", 0, "End at time T instead of the scene's", 0},
+    {"steps", KEY_STEPS, "N", 0, "End after N steps", 0},
+    {"device", KEY_DEVICE, "cpu", 0, "Where to compute; this version: cpu", 0},
+    {"precision", KEY_PRECISION, "double", 0, "Of the pair arithmetic; this version: double", 0},
+    {"dry-run", KEY_DRY, NULL, 0, "Do everything but the steps: check, make the particles, show the plan", 0},
+    {"strict", KEY_STRICT, NULL, 0, "Fix the order of every sum (so it is in this version)", 0},
+    {"audit", KEY_AUDIT, NULL, 0, "Prove that passes touch only what they declare (slow)", 0},
+    {"quiet", KEY_QUIET, NULL, 0, "No progress, no table", 0},
+    {"verbose", KEY_VERBOSE, NULL, 0, "Show the plan, and what plugins say", 0},
+    {0},
+};
+
+struct arguments {
+    struct scene_options scene;
+    const char *out;
+    int threads;
+    double until;
+    uint64_t steps;
+    bool dry, audit, quiet, verbose;
+};
+
+static double number(struct argp_state *state, const char *option, const char *text, double min, bool whole)
+{
+    char *end;
+    errno = 0;
+    double value = strtod(text, &end);
+    if (end == text || *end || errno || !isfinite(value) || value < min || (whole && value > 9e15) ||
+        (whole && floor(value) < value))
+        argp_error(state, "--%s: \"%s\" is no %s of at least %g", option, text,
+                   whole ? "whole number" : "number", min);
+    return value;
+}
+
+static void only(struct argp_state *state, const char *option, const char *text, const char *here)
+{
+    if (strcmp(text, here) != 0)
+        argp_error(state, "--%s %s is not available in this version; it has: %s", option, text, here);
+}
+
+static error_t parse(int key, char *arg, struct argp_state *state)
+{
+    struct arguments *a = state->input;
+    switch (key) {
+    case ARGP_KEY_INIT:
+        state->child_inputs[0] = &a->scene;
+        return 0;
+    case KEY_OUT:
+        a->out = arg;
+        return 0;
+    case KEY_THREADS:
+        a->threads = (int)fmin(number(state, "threads", arg, 1.0, true), 4096.0);
+        return 0;
+    case KEY_UNTIL:
+        a->until = number(state, "until", arg, -INFINITY, false);
+        return 0;
+    case KEY_STEPS:
+        a->steps = (uint64_t)number(state, "steps", arg, 0.0, true);
+        return 0;
+    case KEY_DEVICE:
+        only(state, "device", arg, "cpu");
+        return 0;
+    case KEY_PRECISION:
+        only(state, "precision", arg, "double");
+        return 0;
+    case KEY_DRY:
+        a->dry = true;
+        return 0;
+    case KEY_STRICT:
+        return 0;
+    case KEY_AUDIT:
+        a->audit = true;
+        return 0;
+    case KEY_QUIET:
+        a->quiet = true;
+        return 0;
+    case KEY_VERBOSE:
+        a->verbose = true;
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+/* A handler can be given nothing; it may set this and no more. */
+static volatile int interrupted;
+
+static void interrupt(int signal_number)
+{
+    (void)signal_number;
+    interrupted = 1;
+}
+
+/* "noh" of "examples/noh.json". */
+static void default_out(const char *scene, char *out, size_t size)
+{
+    const char *slash = strrchr(scene, '/');
+    snprintf(out, size, "%s", slash ? slash + 1 : scene);
+    char *dot = strrchr(out, '.');
+    if (dot && dot != out)
+        *dot = '\0';
+    if (strcmp(out, slash ? slash + 1 : scene) == 0)
+        snprintf(out, size, "sph-out");
+}
+
+static int run(const struct arguments *a, struct loaded *l, struct error *e)
+{
+    char folder[512];
+    struct output out;
+    default_out(a->scene.path, folder, sizeof folder);
+    struct loop_options o = {.scene_path = a->scene.path, .until = a->until, .steps = a->steps,
+                             .progress = !a->quiet, .table = !a->quiet, .audit = a->audit,
+                             .threads = a->threads, .stop = &interrupted};
+    double end = isnan(a->until) ? l->scene.time.end : a->until;
+    if (!(end >= l->scene.time.begin))
+        return error_set(e, EXIT_USAGE, "--until %g lies before the scene's begin, %g", end, l->scene.time.begin);
+    if (output_open(&out, a->out ? a->out : folder, e))
+        return -1;
+    signal(SIGINT, interrupt);
+    signal(SIGTERM, interrupt);
+    signal(SIGXFSZ, SIG_IGN); /* a full disk or a size limit comes back as an error of write */
+    int status = loop_run(&l->plan, &out, &o, e);
+    output_close(&out);
+    return status;
+}
+
+static int run_or_show(const struct arguments *a, struct error *e)
+{
+    struct loaded l;
+    int status = loaded_make(&l, &a->scene, a->audit, e);
+    if (!status && a->verbose)
+        l.registry.log_level = SPH_LOG_INFO;
+    if (!status)
+        status = plan_fill(&l.plan, e);
+    if (!status && (a->dry || a->verbose))
+        plan_print(&l.plan, stdout);
+    if (!status && !a->dry)
+        status = run(a, &l, e);
+    loaded_free(&l);
+    return status;
+}
+
+int cli_run(int argc, char **argv)
+{
+    static const struct argp argp = {
+        .options = options, .parser = parse, .children = children, .args_doc = "SCENE.json",
+        .doc = "Runs a scene. The folder of results holds snapshots (snapshot_NNNN.vtkhdf: open them in "
+               "ParaView), log.csv and summary.json.\v"
+               "Exit status: 0 done; 1 the run failed, the last good state is kept; 2 the command line or the "
+               "scene is wrong; 3 a plugin is refused."};
+    struct arguments a = {.threads = omp_get_num_procs(), .until = NAN, .steps = UINT64_MAX};
+    struct error e = {0};
+    argp_err_exit_status = EXIT_USAGE;
+    argp_parse(&argp, argc, argv, 0, NULL, &a);
+    int status = ranks_begin(&argc, &argv, &e);
+    if (!status)
+        status = run_or_show(&a, &e);
+    int code = status ? cli_error(&e) : interrupted ? EXIT_RUN : EXIT_DONE;
+    ranks_end();
+    return code;
+}

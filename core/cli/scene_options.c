@@ -1,0 +1,76 @@
+/* cli/scene_options.c -- a scene from the command line: --load, --set, and the road from file to plan. */
+#include "cli/scene_options.h"
+
+enum { KEY_LOAD = 'l', KEY_SET = 's' };
+
+static const struct argp_option options[] = {
+    {"load", KEY_LOAD, "PLUGIN", 0, "Load a plugin, by name or path, besides those the scene names", 0},
+    {"set", KEY_SET, "PATH=VALUE", 0, "Change the scene: --set time.end=0.1 --set scheme.name=NAME", 0},
+    {0},
+};
+
+static error_t parse(int key, char *arg, struct argp_state *state)
+{
+    struct scene_options *o = state->input;
+    switch (key) {
+    case KEY_LOAD:
+        if (o->n_load == sizeof o->load / sizeof o->load[0])
+            argp_error(state, "too many --load");
+        o->load[o->n_load++] = arg;
+        return 0;
+    case KEY_SET:
+        if (o->n_set == sizeof o->set / sizeof o->set[0])
+            argp_error(state, "too many --set");
+        o->set[o->n_set++] = arg;
+        return 0;
+    case ARGP_KEY_ARG:
+        if (o->path)
+            argp_error(state, "one scene at a time: \"%s\" and \"%s\"", o->path, arg);
+        o->path = arg;
+        return 0;
+    case ARGP_KEY_NO_ARGS:
+        argp_error(state, "no scene is given");
+        return 0;
+    default:
+        return ARGP_ERR_UNKNOWN;
+    }
+}
+
+const struct argp scene_argp = {.options = options, .parser = parse, .args_doc = "SCENE.json"};
+
+int loaded_make(struct loaded *l, const struct scene_options *o, bool guarded, struct error *e)
+{
+    *l = (struct loaded){0};
+    if (document_load(&l->doc, o->path, e))
+        return -1;
+    l->has_doc = true;
+    for (size_t i = 0; i < o->n_set; i++)
+        if (document_set(&l->doc, o->set[i], e))
+            return -1;
+    if (scene_compile(&l->scene, &l->doc, e))
+        return -1;
+    l->has_scene = true;
+    if (registry_init(&l->registry, e))
+        return -1;
+    l->has_registry = true;
+    for (size_t i = 0; i < o->n_load; i++)
+        if (loader_load(&l->registry, o->load[i], e))
+            return -1;
+    for (size_t i = 0; i < l->scene.n_plugin; i++)
+        if (loader_load(&l->registry, l->scene.plugin[i], e))
+            return -1;
+    l->has_plan = true;
+    return plan_make(&l->plan, &l->registry, &l->scene, guarded, e);
+}
+
+void loaded_free(struct loaded *l)
+{
+    if (l->has_plan)
+        plan_free(&l->plan);
+    if (l->has_registry)
+        registry_fini(&l->registry);
+    if (l->has_scene)
+        scene_free(&l->scene);
+    if (l->has_doc)
+        document_free(&l->doc);
+}

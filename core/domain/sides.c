@@ -1,0 +1,331 @@
+/* domain/sides.c -- wraps particles at the sides of the domain and makes their ghosts. Touches the
+ * particles' position and state columns, and what stands behind the real particles. */
+#include "domain/sides.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define IMAGE_LOW 1u
+#define IMAGE_HIGH 2u
+
+/* Periodic sides come in pairs. */
+static bool periodic(const struct box *box, int axis)
+{
+    return box->bounded && box->side[axis][0] == SIDE_PERIODIC &&
+           box->side[axis][1] == SIDE_PERIODIC;
+}
+
+static bool mirror(const struct box *box, int axis, int high)
+{
+    return box->bounded && box->side[axis][high] == SIDE_MIRROR;
+}
+
+/* -- Wrapping ------------------------------------------------------------------------------------ */
+
+static double wrap_periodic(double x, double min, double max)
+{
+    double length = max - min;
+
+    x -= length * floor((x - min) / length);
+    /* Rounding may leave it on the far side, or a hair before the near one. */
+    return x < min || x >= max ? min : x;
+}
+
+/* Reflects x into the box; *flipped says whether the direction is turned. */
+static double wrap_mirror(const struct box *box, int axis, double x, bool *flipped)
+{
+    double min = box->min[axis], max = box->max[axis], length = max - min;
+    bool low = mirror(box, axis, 0), high = mirror(box, axis, 1);
+
+    *flipped = false;
+    if (low && high && (x < min || x > max)) {
+        /* Both: the images repeat every two lengths, and every second one is turned. */
+        double t = fmod(x - min, 2 * length);
+
+        t = t < 0 ? t + 2 * length : t;
+        *flipped = t > length;
+        return *flipped ? fmin(fmax(max - (t - length), min), max) : min + t;
+    }
+    if ((low && x < min) || (high && x > max)) {
+        *flipped = true;
+        return 2 * (x < min ? min : max) - x;
+    }
+    return x;
+}
+
+/* Whether component k of a property changes sign at a mirror across `axis`. */
+static bool turns(uint32_t type, int dim, uint32_t k, int axis)
+{
+    /* Of a symmetric tensor, in the order xx, xy, xz, yy, yz, zz as present. */
+    static const int row[4][6] = {{0}, {0}, {0, 0, 1}, {0, 0, 0, 1, 1, 2}};
+    static const int column[4][6] = {{0}, {0}, {0, 1, 1}, {0, 1, 2, 1, 2, 2}};
+
+    switch (type) {
+    case SPH_VECTOR:
+        return (int)k == axis;
+    case SPH_SYM:
+        return (row[dim][k] == axis) != (column[dim][k] == axis);
+    case SPH_MATRIX:
+        return ((int)k / dim == axis) != ((int)k % dim == axis);
+    default:
+        return false;
+    }
+}
+
+/* Turns what a mirror across `axis` turns, in every state column but the position. */
+static void turn_state(struct particles *p, size_t i, int axis)
+{
+    for (size_t k = 0; k < p->n_column; k++) {
+        const struct column *c = &p->column[k];
+
+        for (uint32_t q = 0; c->state && strcmp(c->name, "x") != 0 && q < c->ncomp; q++) {
+            if (turns(c->type, p->dim, q, axis)) {
+                double *v = (double *)c->data + q * c->plane + i;
+
+                *v = -*v;
+            }
+        }
+    }
+}
+
+/* Brings particle i back along one axis; true if it moved. */
+static bool wrap_axis(const struct box *box, struct particles *p, double *x, size_t i, int axis)
+{
+    double old = x[i];
+    bool flipped = false;
+
+    if (old >= box->min[axis] && old < box->max[axis]) {
+        return false;
+    }
+    if (!isfinite(old)) {
+        return false; /* the neighbour search names it */
+    }
+    x[i] = periodic(box, axis) ? wrap_periodic(old, box->min[axis], box->max[axis])
+                               : wrap_mirror(box, axis, old, &flipped);
+    if (flipped) {
+        turn_state(p, i, axis);
+    }
+    return flipped || x[i] < old || x[i] > old;
+}
+
+size_t sides_wrap(const struct box *box, struct particles *p)
+{
+    size_t moved = 0;
+    double *x[3];
+    bool any = false;
+
+    for (int a = 0; a < p->dim; a++) {
+        x[a] = particles_real(p, "x", (uint32_t)a);
+        any = any || periodic(box, a) || mirror(box, a, 0) || mirror(box, a, 1);
+    }
+    if (!any || !x[0]) {
+        return 0;
+    }
+    for (size_t i = 0; i < p->n; i++) {
+        bool here = false;
+
+        for (int a = 0; a < p->dim; a++) {
+            here = wrap_axis(box, p, x[a], i, a) || here;
+        }
+        moved += here;
+    }
+    return moved;
+}
+
+/* -- Ghosts -------------------------------------------------------------------------------------- */
+
+void ghosts_fini(struct ghosts *g)
+{
+    free(g->parent);
+    free(g->image);
+    memset(g, 0, sizeof *g);
+}
+
+/* One layer of images must be enough. Images of a pair of such sides repeat every length (two, for
+ * mirrors, but then turned ones stand between), so the first layer that is missing begins a length
+ * away: that must be out of reach. A particle may well see a neighbour and its image, or its own
+ * image, when the length is less than twice the margin: that is what an endless row looks like. */
+static int check_width(const struct box *box, int axis, double margin, const struct particles *p,
+                       struct error *e)
+{
+    double length = box->max[axis] - box->min[axis];
+    bool pair = periodic(box, axis) || (mirror(box, axis, 0) && mirror(box, axis, 1));
+
+    if (pair && !(length >= margin)) {
+        return error_set(e, EXIT_RUN,
+                         "%s: the domain is %g wide along %c, between %s sides, but particles "
+                         "reach as far as %g: use a larger box or a smaller smoothing length",
+                         p->name, length, "xyz"[axis], periodic(box, axis) ? "periodic" : "mirror",
+                         margin);
+    }
+    return 0;
+}
+
+static int ghosts_reserve(struct ghosts *g, size_t n, struct error *e)
+{
+    size_t capacity = n + n / 8;
+    uint32_t *parent;
+    uint8_t *image;
+
+    if (n <= g->capacity) {
+        return 0;
+    }
+    parent = realloc(g->parent, capacity * sizeof *parent);
+    if (!parent) {
+        return error_memory(e, "ghosts", capacity * sizeof *parent);
+    }
+    g->parent = parent;
+    image = realloc(g->image, capacity * sizeof *image);
+    if (!image) {
+        return error_memory(e, "ghosts", capacity * sizeof *image);
+    }
+    g->image = image;
+    g->capacity = capacity;
+    return 0;
+}
+
+/* Whether a coordinate is near enough to the side opposite to (periodic) or at (mirror) which its
+ * image stands. */
+static bool near_side(const struct box *box, int axis, unsigned image, double x, double margin)
+{
+    bool at_low = (image == IMAGE_LOW) != periodic(box, axis);
+
+    return (at_low ? x - box->min[axis] : box->max[axis] - x) < margin;
+}
+
+static double image_of(const struct box *box, int axis, unsigned image, double x)
+{
+    double min = box->min[axis], max = box->max[axis];
+
+    if (periodic(box, axis)) {
+        return image == IMAGE_LOW ? x - (max - min) : x + (max - min);
+    }
+    return image == IMAGE_LOW ? 2 * min - x : 2 * max - x;
+}
+
+/* Appends the images across one side of all that stands there, ghosts of earlier axes included. */
+static int add_layer(struct ghosts *g, const struct box *box, struct particles *p, int axis,
+                     unsigned image, size_t present, double margin, struct error *e)
+{
+    double *x[3] = {0};
+    size_t more = 0;
+
+    x[axis] = particles_real(p, "x", (uint32_t)axis);
+    for (size_t i = 0; i < present; i++) {
+        more += near_side(box, axis, image, x[axis][i], margin);
+    }
+    if (more == 0) {
+        return 0;
+    }
+    if (ghosts_reserve(g, g->n + more, e) != 0 ||
+        particles_resize(p, p->n, g->n + more, e) != 0) {
+        return -1;
+    }
+    for (int a = 0; a < p->dim; a++) {
+        x[a] = particles_real(p, "x", (uint32_t)a); /* after the resize, which moves them */
+    }
+    for (size_t i = 0; i < present; i++) {
+        if (near_side(box, axis, image, x[axis][i], margin)) {
+            bool real = i < p->n;
+            uint32_t parent = real ? (uint32_t)i : g->parent[i - p->n];
+            unsigned before = real ? 0 : g->image[i - p->n];
+
+            g->parent[g->n] = parent;
+            g->image[g->n] = (uint8_t)(before | image << 2 * axis);
+            for (int a = 0; a < p->dim; a++) {
+                x[a][p->n + g->n] = a == axis ? image_of(box, axis, image, x[a][i]) : x[a][i];
+            }
+            g->n++;
+        }
+    }
+    return 0;
+}
+
+int ghosts_make(struct ghosts *g, const struct box *box, struct particles *p, double margin,
+                struct error *e)
+{
+    int h = particles_find(p, "h");
+
+    g->n = 0;
+    if (particles_resize(p, p->n, 0, e) != 0) {
+        return -1;
+    }
+    if (!particles_real(p, "x", 0)) {
+        return error_set(e, EXIT_RUN, "%s has no positions", p->name);
+    }
+    for (int a = 0; a < p->dim && p->n > 0; a++) {
+        size_t present = p->n + p->n_ghost;
+        bool pair = periodic(box, a);
+
+        if (check_width(box, a, margin, p, e) != 0) {
+            return -1;
+        }
+        if ((pair || mirror(box, a, 0)) &&
+            add_layer(g, box, p, a, IMAGE_LOW, present, margin, e) != 0) {
+            return -1;
+        }
+        if ((pair || mirror(box, a, 1)) &&
+            add_layer(g, box, p, a, IMAGE_HIGH, present, margin, e) != 0) {
+            return -1;
+        }
+    }
+    if (h >= 0) {
+        ghosts_refresh(g, box, p, h);
+    }
+    return 0;
+}
+
+/* Component k of a real column; what an image is: a position shifts, a direction turns. */
+static void refresh_real(const struct ghosts *g, const struct box *box, struct particles *p,
+                         const struct column *c, uint32_t k)
+{
+    double *x = (double *)c->data + k * c->plane;
+    bool position = strcmp(c->name, "x") == 0;
+    unsigned turning = 0; /* the image bits that change the sign */
+
+    for (int a = 0; a < p->dim && !position; a++) {
+        if (!periodic(box, a) && turns(c->type, p->dim, k, a)) {
+            turning |= 3u << 2 * a;
+        }
+    }
+    for (size_t q = 0; q < g->n; q++) {
+        double value = x[g->parent[q]];
+        unsigned image = g->image[q];
+
+        if (position) {
+            image = image >> 2 * k & 3u;
+            value = image ? image_of(box, (int)k, image, value) : value;
+        } else if (image & turning) {
+            /* A component of a tensor turns once for each of its two axes that is mirrored. */
+            unsigned turned = image & turning;
+            int times = ((turned & 3u) != 0) + ((turned & 12u) != 0) + ((turned & 48u) != 0);
+
+            value = times % 2 ? -value : value;
+        }
+        x[p->n + q] = value;
+    }
+}
+
+void ghosts_refresh(const struct ghosts *g, const struct box *box, struct particles *p, int c)
+{
+    const struct column *column = &p->column[c];
+
+    if (column->type == SPH_INT32) {
+        int32_t *x = column->data;
+
+        for (size_t q = 0; q < g->n; q++) {
+            x[p->n + q] = x[g->parent[q]];
+        }
+    } else if (column->type == SPH_INT64) {
+        int64_t *x = column->data;
+
+        for (size_t q = 0; q < g->n; q++) {
+            x[p->n + q] = x[g->parent[q]];
+        }
+    } else {
+        for (uint32_t k = 0; k < column->ncomp; k++) {
+            refresh_real(g, box, p, column, k);
+        }
+    }
+}

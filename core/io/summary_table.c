@@ -1,0 +1,181 @@
+/* summary_table.c -- the table that a run ends with, for people. Reads a summary, prints. */
+#include "config.h"
+
+#include "io/summary.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+#define WIDTH 80
+#define LABEL_LEAST 14
+#define LABEL_MOST 30
+#define VALUE_WIDTH 12
+
+/* Columns that a UTF-8 text takes on a terminal: characters, wide ones aside. */
+static int columns(const char *text)
+{
+    int n = 0;
+    for (; *text; text++)
+        n += ((unsigned char)*text & 0xC0) != 0x80;
+    return n;
+}
+
+static int widest(int width, const char *prefix, const char *text)
+{
+    const int n = columns(prefix) + columns(text);
+    return n > width && n <= LABEL_MOST ? n : width;
+}
+
+/* The labels' column: as wide as the widest needs. */
+static int label_width(const struct summary *s)
+{
+    int width = LABEL_LEAST;
+    for (size_t i = 0; i < s->n_probe; i++)
+        width = widest(width, "", s->probe[i].name);
+    for (size_t i = 0; i < s->n_error; i++)
+        width = widest(width, "error of ", s->error[i].field);
+    return width;
+}
+
+static void label(FILE *out, int width, const char *prefix, const char *text)
+{
+    const int pad = width - columns(prefix) - columns(text);
+    fprintf(out, "%s%s%*s  ", prefix, text, pad > 0 ? pad : 0, "");
+}
+
+/* A number of people's length; "-" if there is none. */
+static const char *number(char *text, size_t size, double value)
+{
+    if (isnan(value))
+        snprintf(text, size, "-");
+    else
+        snprintf(text, size, "%.4g", value);
+    return text;
+}
+
+static const char *seconds(char *text, size_t size, double s)
+{
+    if (!(s >= 120))
+        snprintf(text, size, "%.3g s", s);
+    else if (s < 7200)
+        snprintf(text, size, "%d min %02d s", (int)(s / 60), (int)fmod(s, 60));
+    else
+        snprintf(text, size, "%d h %02d min", (int)(s / 3600), (int)fmod(s / 60, 60));
+    return text;
+}
+
+static void print_particles(const struct summary *s, FILE *out, int width)
+{
+    int column = width + 2;
+    label(out, width, "particles", "");
+    for (size_t i = 0; i < s->n_array; i++) {
+        char text[160];
+        snprintf(text, sizeof text, "%s %llu%s", s->array_name[i], (unsigned long long)s->array_n[i],
+                 i + 1 < s->n_array ? ", " : "");
+        if (i > 0 && column + columns(text) > WIDTH) {
+            fprintf(out, "\n%*s", width + 2, "");
+            column = width + 2;
+        }
+        fputs(text, out);
+        column += columns(text);
+    }
+    fputs(s->n_array ? "\n" : "none\n", out);
+}
+
+static void print_probes(const struct summary *s, FILE *out, int width)
+{
+    char a[32], b[32];
+    for (size_t i = 0; i < s->n_probe; i++) {
+        const bool expected = !isnan(s->probe[i].expected);
+        label(out, width, "", s->probe[i].name);
+        fprintf(out, "%-*s", expected ? VALUE_WIDTH : 0, number(a, sizeof a, s->probe[i].value));
+        if (expected)
+            fprintf(out, "  (expected %s)", number(b, sizeof b, s->probe[i].expected));
+        fputs("\n", out);
+    }
+}
+
+/* One line if it fits: the norms, then whose they are. */
+static void print_errors(const struct summary *s, FILE *out, int width)
+{
+    for (size_t i = 0; i < s->n_error; i++) {
+        const struct summary_error *from = &s->error[i];
+        const struct {
+            const char *name;
+            double value;
+        } norm[] = {
+            {"l1", from->l1}, {"l1_rel", from->l1_rel}, {"l2", from->l2}, {"linf", from->linf}};
+        int column = width + 2;
+        label(out, width, "error of ", from->field);
+        for (size_t k = 0; k < sizeof norm / sizeof norm[0]; k++)
+            column += fprintf(out, "%s %-9.3g  ", norm[k].name, norm[k].value);
+        if (from->reference && *from->reference) {
+            if (column + columns(from->reference) + 2 > WIDTH)
+                fprintf(out, "\n%*s", width + 2, "");
+            fprintf(out, "(%s)", from->reference);
+        }
+        fputs("\n", out);
+    }
+}
+
+static void print_drift(const struct summary *s, FILE *out, int width)
+{
+    const int n = s->dim >= 1 && s->dim <= 3 ? s->dim : 0;
+    double momentum = 0;
+    for (int k = 0; k < n; k++)
+        momentum += s->momentum_drift[k] * s->momentum_drift[k];
+    label(out, width, "energy drift", "");
+    fprintf(out, "%-*.2g  momentum %.2g, mass %.2g\n", VALUE_WIDTH, s->energy_drift, sqrt(momentum),
+            s->mass_drift);
+}
+
+static void print_cost(const struct summary *s, FILE *out, int width)
+{
+    char text[64];
+    const double pair = summary_ns_per_pair(s), update = summary_us_per_update(s);
+    label(out, width, "cost", "");
+    if (!isnan(pair))
+        fprintf(out, "%.3g ns per pair, ", pair);
+    if (!isnan(update))
+        fprintf(out, "%.3g us per particle update, ", update);
+    fputs(seconds(text, sizeof text, s->cost.wall), out);
+    if (s->ranks > 1)
+        fprintf(out, ", %d ranks", s->ranks);
+    if (s->threads > 0)
+        fprintf(out, ", %d thread%s", s->threads, s->threads == 1 ? "" : "s");
+    fputs("\n", out);
+    if (s->cost.peak_rss > 0) {
+        label(out, width, "memory", "");
+        fprintf(out, "%-*.4g  MB at most, %.4g bytes per particle in arrays\n", VALUE_WIDTH,
+                1e-6 * (double)s->cost.peak_rss, s->cost.bytes_per_particle);
+    }
+}
+
+void summary_table(const struct summary *s, FILE *out)
+{
+    const int width = label_width(s);
+    const char *title = s->title ? s->title : "", *scene = s->scene ? s->scene : "";
+    const int gap = WIDTH - columns(title) - columns(scene);
+    char steps[32], time[32];
+    if (*title && gap >= 2)
+        fprintf(out, "%s%*s%s\n", title, gap, "", scene);
+    else
+        fprintf(out, "%s%s%s\n", title, *title ? "\n" : "", scene);
+    if (s->status && strcmp(s->status, "done") != 0) {
+        label(out, width, s->status, "");
+        fprintf(out, "%s\n", s->reason ? s->reason : "before its end");
+    }
+    print_particles(s, out, width);
+    label(out, width, "steps", "");
+    snprintf(steps, sizeof steps, "%llu", (unsigned long long)s->steps);
+    fprintf(out, "%-*s  to t = %s\n", VALUE_WIDTH, steps, number(time, sizeof time, s->time));
+    print_probes(s, out, width);
+    print_errors(s, out, width);
+    print_drift(s, out, width);
+    print_cost(s, out, width);
+    if (s->picture) {
+        label(out, width, "picture", "");
+        fprintf(out, "%s\n", s->picture);
+    }
+}

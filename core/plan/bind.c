@@ -1,0 +1,305 @@
+/* plan/bind.c -- steps to passes: one for each destination array, its columns bound to the names that the
+ * function declares, its sources found. */
+#include "base/text.h"
+#include "plan/inside.h"
+#include <stdlib.h>
+#include <string.h>
+
+static bool listed(const char *const *names, size_t n, const char *name)
+{
+    if (n == 0)
+        return true;
+    for (size_t i = 0; i < n; i++)
+        if (strcmp(names[i], name) == 0)
+            return true;
+    return false;
+}
+
+/* Every name of an edit's list is an array. */
+static int check_arrays(const struct plan *plan, const struct step *s, const char *const *names,
+                        size_t n, struct error *e)
+{
+    for (size_t i = 0; i < n; i++) {
+        bool found = false;
+        for (size_t a = 0; a < plan->n_array; a++)
+            found = found || strcmp(plan->array[a].p.name, names[i]) == 0;
+        if (found)
+            continue;
+        char near[512];
+        const char **known = calloc(plan->n_array + 1, sizeof *known);
+        for (size_t a = 0; known && a < plan->n_array; a++)
+            known[a] = plan->array[a].p.name;
+        text_suggest(near, sizeof near, names[i], known, known ? plan->n_array : 0);
+        free(known);
+        return document_fail(plan->scene->doc, s->node, e, "there is no particle array \"%s\"%s",
+                             names[i], near);
+    }
+    return 0;
+}
+
+/* Columns of `array` for every declared property; access_mask: those that must exist there. */
+static int bind_columns(struct plan *plan, struct binding *b, size_t array, const sph_item *item,
+                        uint32_t access_mask, struct error *e)
+{
+    struct particles *p = &plan->array[array].p;
+    b->array = array;
+    b->column = malloc((item->props.count + 1) * sizeof *b->column);
+    if (!b->column)
+        return error_memory(e, "the plan", item->props.count * sizeof *b->column);
+    for (uint32_t k = 0; k < item->props.count; k++) {
+        const sph_prop *prop = list_at(&item->props, k);
+        b->column[k] = -1;
+        if (!(prop->access & access_mask))
+            continue;
+        b->column[k] = particles_add(p, prop->name, prop->unit, prop->doc, prop->type, e);
+        if (b->column[k] < 0)
+            return error_prefix(e, "%s", item->name);
+    }
+    return 0;
+}
+
+/* The parameters of a use: the scheme's members that it declares, then the step's own. */
+static int configure(struct plan *plan, struct use *use, const struct step *s, struct error *e)
+{
+    const struct document *d = plan->scene->doc;
+    const cJSON *member;
+    cJSON_ArrayForEach(member, plan->scene->scheme.params)
+    {
+        if (use_declares(use, member->string) && use_set(use, d, member, e))
+            return -1;
+    }
+    return use_set_all(use, d, s->params, e);
+}
+
+static int configure_eos(struct plan *plan, struct use *use, const struct scene_material *m,
+                         struct error *e)
+{
+    const struct document *d = plan->scene->doc;
+    const struct entry *entry = registry_find(plan->registry, KIND_EOS, m->eos);
+    if (!entry)
+        return plan_unknown(plan, m->eos_node, KIND_EOS, m->eos, e);
+    const sph_eos *eos = entry_eos(entry);
+    if (use_init(use, entry, eos->item, eos->life, e))
+        return -1;
+    if (use_set_all(use, d, m->eos_params, e))
+        return -1;
+    struct error why = {0};
+    if (config_check(&use->config, &why))
+        return document_fail(d, m->eos_node, e, "%s", why.text);
+    return use_create(use, plan->registry, plan->dim, e);
+}
+
+static const struct scene_material *material_of(const struct plan *plan, size_t array)
+{
+    size_t m = plan->scene->array[array].material;
+    return m == SIZE_MAX ? NULL : &plan->scene->material[m];
+}
+
+static struct pass *new_pass(struct plan *plan, const struct step *s, size_t array, struct error *e)
+{
+    struct pass *bigger = plan_grow(plan->pass, &plan->n_pass, sizeof *bigger);
+    if (!bigger) {
+        error_memory(e, "the plan", sizeof *bigger);
+        return NULL;
+    }
+    plan->pass = bigger;
+    struct pass *p = &bigger[plan->n_pass - 1];
+    p->step = s->name;
+    p->moment = s->moment;
+    p->unfinished = -1;
+    if (plan_name(&p->name, e, "%s(%s)", s->name, plan->array[array].p.name))
+        return NULL;
+    return p;
+}
+
+#define DST_ANY                                                                                    \
+    (SPH_DST_READ | SPH_DST_WRITE | SPH_DST_SUM | SPH_DST_MAX | SPH_DST_MIN | SPH_SRC_READ)
+
+static int bind_eos(struct plan *plan, const struct step *s, size_t array, struct error *e)
+{
+    const struct scene_material *m = material_of(plan, array);
+    if (!m || !m->eos) {
+        if (s->n_to == 0)
+            return 0;
+        return document_fail(plan->scene->doc, s->node, e, "array \"%s\" has no equation of state",
+                             plan->array[array].p.name);
+    }
+    struct pass *p = new_pass(plan, s, array, e);
+    if (!p || configure_eos(plan, &p->use, m, e))
+        return -1;
+    const sph_eos *eos = entry_eos(p->use.entry);
+    p->shape = SPH_POINT;
+    p->run = eos->run;
+    if (bind_columns(plan, &p->dst, array, eos->item, DST_ANY, e))
+        return -1;
+    /* The state and parameters that the inverse needs, too. */
+    return plan->array[array].eos.item ? 0 : configure_eos(plan, &plan->array[array].eos, m, e);
+}
+
+static int bind_sources(struct plan *plan, struct pass *p, const struct step *s, struct error *e)
+{
+    p->src = calloc(plan->n_array, sizeof *p->src);
+    if (!p->src)
+        return error_memory(e, "the plan", plan->n_array * sizeof *p->src);
+    for (size_t a = 0; a < plan->n_array; a++) {
+        if (!listed(s->from, s->n_from, plan->array[a].p.name))
+            continue;
+        if (bind_columns(plan, &p->src[p->n_src], a, p->use.item, SPH_SRC_READ, e))
+            return -1;
+        p->n_src++;
+        uint32_t *pair = &plan->pair[p->dst.array * plan->n_array + a];
+        if (p->reach > *pair)
+            *pair = p->reach;
+    }
+    return 0;
+}
+
+static int check_operation(struct plan *plan, const struct pass *p, const struct step *s,
+                           struct error *e)
+{
+    if (!s->operation)
+        return 0;
+    const struct document *d = plan->scene->doc;
+    bool writes = false, adds = false, rate = false;
+    for (uint32_t k = 0; s->of && k < p->use.item->props.count; k++) {
+        const sph_prop *prop = list_at(&p->use.item->props, k);
+        const char *target = s->of;
+        for (uint32_t i = 0; i < p->function->rates.count; i++) {
+            const sph_rate *r = list_at(&p->function->rates, i);
+            if (strcmp(r->property, s->of) == 0 && strcmp(r->rate, prop->name) == 0) {
+                target = r->rate;
+                rate = true;
+            }
+        }
+        if (strcmp(prop->name, target) != 0)
+            continue;
+        writes = writes || (prop->access & SPH_DST_WRITE);
+        adds = adds || (prop->access & (SPH_DST_SUM | SPH_DST_MAX | SPH_DST_MIN));
+    }
+    if (s->of && !writes && !adds)
+        return document_fail(d, s->node, e, "%s does not set \"%s\"", s->name, s->of);
+    if (strcmp(s->operation, "summation") == 0 && p->shape != SPH_PAIR)
+        return document_fail(d, s->node, e, "%s is no summation: it sums over no neighbours", s->name);
+    if (strcmp(s->operation, "integration") == 0 && s->of && !rate)
+        return document_fail(d, s->node, e, "%s is no integration: it declares no rate of \"%s\"",
+                             s->name, s->of);
+    return 0;
+}
+
+static int bind_function(struct plan *plan, const struct step *s, size_t array, struct error *e)
+{
+    const struct entry *entry = registry_find(plan->registry, KIND_FUNCTION, s->name);
+    if (!entry)
+        return plan_unknown(plan, s->node ? s->node : plan->scene->scheme.node, KIND_FUNCTION, s->name,
+                            e);
+    const sph_function *f = entry_function(entry);
+    if (!(f->item->dims & (1u << plan->dim)))
+        return document_fail(plan->scene->doc, s->node ? s->node : plan->scene->scheme.node, e,
+                             "%s does not work in %d dimensions", s->name, plan->dim);
+    struct pass *p = new_pass(plan, s, array, e);
+    if (!p || use_init(&p->use, entry, f->item, f->life, e) || configure(plan, &p->use, s, e) ||
+        use_create(&p->use, plan->registry, plan->dim, e))
+        return -1;
+    p->function = f;
+    p->shape = f->shape;
+    p->before = f->before;
+    p->run = f->run;
+    p->after = f->after;
+    p->reach = f->reach;
+    p->max_sweeps = f->max_sweeps;
+    if (bind_columns(plan, &p->dst, array, f->item, DST_ANY, e) || check_operation(plan, p, s, e))
+        return -1;
+    if (f->max_sweeps)
+        p->unfinished = particles_find(&plan->array[array].p, f->unfinished);
+    if (f->shape != SPH_PAIR)
+        return 0;
+    if (!plan->has_kernel)
+        return document_fail(plan->scene->doc, plan->scene->scheme.node, e,
+                             "%s sums over neighbours, so the scene needs a \"kernel\"", s->name);
+    if (f->reach_scale > plan->reach_scale)
+        plan->reach_scale = f->reach_scale;
+    return bind_sources(plan, p, s, e);
+}
+
+static int bind_reductions(struct plan *plan, size_t pass, struct error *e)
+{
+    const struct pass *p = &plan->pass[pass];
+    for (uint32_t i = 0; p->function && i < p->function->reductions.count; i++) {
+        const sph_reduction *declared = list_at(&p->function->reductions, i);
+        struct reduction *bigger = plan_grow(plan->reduction, &plan->n_reduction, sizeof *bigger);
+        if (!bigger)
+            return error_memory(e, "reductions", sizeof *bigger);
+        plan->reduction = bigger;
+        bigger[plan->n_reduction - 1] = (struct reduction){
+            declared, pass, p->dst.array, particles_find(&plan->array[p->dst.array].p, declared->property)};
+    }
+    return 0;
+}
+
+int bind_passes(struct plan *plan, struct error *e)
+{
+    plan->pair = calloc(plan->n_array * plan->n_array + 1, sizeof *plan->pair);
+    if (!plan->pair)
+        return error_memory(e, "the plan", plan->n_array * plan->n_array);
+    plan->reach_scale = 0.0;
+    for (size_t i = 0; i < plan->n_step; i++) {
+        const struct step *s = &plan->step[i];
+        if (check_arrays(plan, s, s->to, s->n_to, e) || check_arrays(plan, s, s->from, s->n_from, e))
+            return -1;
+        for (size_t a = 0; a < plan->n_array; a++) {
+            if (!listed(s->to, s->n_to, plan->array[a].p.name))
+                continue;
+            if (s->kind == KIND_EOS ? bind_eos(plan, s, a, e) : bind_function(plan, s, a, e))
+                return -1;
+        }
+    }
+    if (plan->reach_scale <= 0.0)
+        plan->reach_scale = 1.0;
+    for (size_t i = 0; i < plan->n_pass; i++)
+        if (bind_reductions(plan, i, e))
+            return -1;
+    return 0;
+}
+
+void bind_free(struct plan *plan)
+{
+    for (size_t i = 0; i < plan->n_pass; i++) {
+        struct pass *p = &plan->pass[i];
+        use_fini(&p->use, plan->registry);
+        free(p->name);
+        free(p->dst.column);
+        for (size_t k = 0; k < p->n_src; k++)
+            free(p->src[k].column);
+        free(p->src);
+    }
+    free(plan->pass);
+    free(plan->reduction);
+    free(plan->pair);
+}
+
+static bool binding_has(const struct pass *p, const struct binding *b, size_t array, int column,
+                        uint32_t access)
+{
+    if (b->array != array)
+        return false;
+    for (uint32_t k = 0; k < p->use.item->props.count; k++) {
+        const sph_prop *prop = list_at(&p->use.item->props, k);
+        if ((prop->access & access) && b->column[k] == column)
+            return true;
+    }
+    return false;
+}
+
+bool pass_writes(const struct pass *p, size_t array, int column)
+{
+    return binding_has(p, &p->dst, array, column,
+                       SPH_DST_WRITE | SPH_DST_SUM | SPH_DST_MAX | SPH_DST_MIN);
+}
+
+bool pass_reads_source(const struct pass *p, size_t array, int column)
+{
+    for (size_t s = 0; s < p->n_src; s++)
+        if (binding_has(p, &p->src[s], array, column, SPH_SRC_READ))
+            return true;
+    return false;
+}

@@ -1,0 +1,202 @@
+/* plan/columns.c -- the arrays' columns: those that every scene has, the user's own, and what the passes
+ * and the integrator make of them (state, rates, initial values). */
+#include "base/text.h"
+#include "plan/inside.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The columns that the core itself works on. */
+static int add_basic(struct plan_array *a, struct error *e)
+{
+    struct particles *p = &a->p;
+    a->position = particles_add(p, "x", "m", "position", SPH_VECTOR, e);
+    a->smoothing = particles_add(p, "h", "m", "smoothing length", SPH_SCALAR, e);
+    a->mass = particles_add(p, "m", "kg", "mass", SPH_SCALAR, e);
+    a->id = particles_add(p, "id", "", "number of the particle, for life", SPH_INT64, e);
+    a->velocity = -1;
+    if (a->position < 0 || a->smoothing < 0 || a->mass < 0 || a->id < 0)
+        return -1;
+    for (size_t c = 0; c < p->n_column; c++)
+        p->column[c].state = p->column[c].output = true;
+    return 0;
+}
+
+int columns_begin(struct plan *plan, bool guarded, struct error *e)
+{
+    const struct scene *s = plan->scene;
+    plan->array = calloc(s->n_array ? s->n_array : 1, sizeof *plan->array);
+    if (!plan->array)
+        return error_memory(e, "particle arrays", s->n_array * sizeof *plan->array);
+    plan->n_array = s->n_array;
+    for (size_t i = 0; i < s->n_array; i++) {
+        struct plan_array *a = &plan->array[i];
+        a->scene = &s->array[i];
+        if (particles_init(&a->p, s->array[i].name, plan->dim, e))
+            return -1;
+        a->p.guarded = guarded;
+        if (add_basic(a, e))
+            return -1;
+        for (size_t k = 0; k < s->array[i].n_column; k++) {
+            const struct scene_column *own = &s->array[i].column[k];
+            int c = particles_add(&a->p, own->name, "", "the scene's own", own->type, e);
+            if (c < 0)
+                return document_fail(s->doc, own->node, e, "%s", e->text);
+            a->p.column[c].state = a->p.column[c].output = true;
+        }
+    }
+    return 0;
+}
+
+/* Whether anything needs the column's value before the passes of an evaluation have made it. */
+static void mark_required(struct plan *plan, const struct pass *p, bool **written)
+{
+    for (uint32_t k = 0; k < p->use.item->props.count; k++) {
+        const sph_prop *prop = list_at(&p->use.item->props, k);
+        struct plan_array *dst = &plan->array[p->dst.array];
+        int c = p->dst.column[k];
+        if ((prop->access & SPH_DST_READ) && !written[p->dst.array][c]) {
+            dst->required[c] = true;
+            if (isinf(dst->initial[c]))
+                dst->initial[c] = prop->start;
+        }
+        for (size_t s = 0; s < p->n_src; s++) {
+            struct plan_array *src = &plan->array[p->src[s].array];
+            int cs = p->src[s].column[k];
+            if ((prop->access & SPH_SRC_READ) && !written[p->src[s].array][cs]) {
+                src->required[cs] = true;
+                if (isinf(src->initial[cs]))
+                    src->initial[cs] = prop->start;
+            }
+        }
+    }
+    for (uint32_t k = 0; k < p->use.item->props.count; k++) {
+        const sph_prop *prop = list_at(&p->use.item->props, k);
+        if (prop->access & (SPH_DST_WRITE | SPH_DST_SUM | SPH_DST_MAX | SPH_DST_MIN))
+            written[p->dst.array][p->dst.column[k]] = true;
+    }
+}
+
+static int find_required(struct plan *plan, struct error *e)
+{
+    bool **written = calloc(plan->n_array, sizeof *written);
+    if (!written)
+        return error_memory(e, "the plan", plan->n_array);
+    int status = 0;
+    for (size_t a = 0; a < plan->n_array; a++) {
+        struct plan_array *pa = &plan->array[a];
+        size_t n = pa->p.n_column;
+        written[a] = calloc(n, 1);
+        pa->required = calloc(n, sizeof *pa->required);
+        pa->given = calloc(n, sizeof *pa->given);
+        pa->initial = malloc(n * sizeof *pa->initial);
+        if (!written[a] || !pa->required || !pa->given || !pa->initial)
+            status = error_memory(e, "the plan", n);
+        for (size_t c = 0; pa->initial && c < n; c++)
+            pa->initial[c] = INFINITY; /* nobody has said */
+    }
+    for (int moment = MOMENT_START; !status && moment <= MOMENT_EVALUATE; moment++)
+        for (size_t i = 0; i < plan->n_pass; i++)
+            if (plan->pass[i].moment == (enum moment)moment)
+                mark_required(plan, &plan->pass[i], written);
+    for (size_t a = 0; a < plan->n_array; a++)
+        free(written[a]);
+    free(written);
+    return status;
+}
+
+static int add_rate(struct plan *plan, struct plan_array *a, const sph_rate *declared, struct error *e)
+{
+    int y = particles_find(&a->p, declared->property);
+    int r = particles_find(&a->p, declared->rate);
+    if (y < 0 || r < 0)
+        return 0; /* an array that no function gives this rate does not move by it */
+    const struct column *cy = &a->p.column[y], *cr = &a->p.column[r];
+    if (cy->type != cr->type || cy->size != sizeof(double))
+        return error_set(e, EXIT_REFUSED, "scheme \"%s\": %s cannot be the rate of %s: other type",
+                         plan->scheme_name, declared->rate, declared->property);
+    for (size_t i = 0; i < a->n_rate; i++)
+        if (a->rate[i].property == y) {
+            if (a->rate[i].rate == r)
+                return 0;
+            return error_set(e, EXIT_USAGE, "array \"%s\": %s has two rates, %s and %s", a->p.name,
+                             declared->property, a->p.column[a->rate[i].rate].name, declared->rate);
+        }
+    struct rate *bigger = plan_grow(a->rate, &a->n_rate, sizeof *bigger);
+    if (!bigger)
+        return error_memory(e, "rates", sizeof *bigger);
+    a->rate = bigger;
+    a->rate[a->n_rate - 1] = (struct rate){y, r, declared->kind};
+    if (y == a->position)
+        a->velocity = r;
+    return 0;
+}
+
+static int add_rates(struct plan *plan, const sph_list *rates, size_t array, struct error *e)
+{
+    for (uint32_t i = 0; i < rates->count; i++)
+        if (add_rate(plan, &plan->array[array], list_at(rates, i), e))
+            return -1;
+    return 0;
+}
+
+/* "a.0": what the integrator keeps of a column. */
+static int add_saved(struct plan_array *a, int column, struct error *e)
+{
+    const struct column *of = &a->p.column[column];
+    char *name = text_format("%s.0", of->name);
+    if (!name)
+        return error_memory(e, "a column", 1);
+    int c = particles_add(&a->p, name, of->unit, "kept by the integrator", of->type, e);
+    free(name);
+    if (c < 0)
+        return -1;
+    a->p.column[c].state = true;
+    return 0;
+}
+
+static int add_integrator_columns(struct plan *plan, struct error *e)
+{
+    for (size_t i = 0; i < plan->n_array; i++) {
+        struct plan_array *a = &plan->array[i];
+        for (size_t k = 0; k < a->n_rate; k++) {
+            struct rate r = a->rate[k];
+            /* A rate outlives its evaluation (it starts the next step), so a sort must carry it. */
+            a->p.column[r.rate].state = a->p.column[r.property].state = true;
+            if (plan->integrator->saves_state && add_saved(a, r.property, e))
+                return -1;
+            if (plan->integrator->saves_rates && r.kind == SPH_KICK && add_saved(a, r.rate, e))
+                return -1;
+        }
+    }
+    return 0;
+}
+
+int columns_finish(struct plan *plan, struct error *e)
+{
+    for (size_t i = 0; i < plan->n_pass; i++) {
+        const struct pass *p = &plan->pass[i];
+        /* What is made once must outlive the sorts. */
+        for (uint32_t k = 0; p->moment == MOMENT_START && k < p->use.item->props.count; k++)
+            plan->array[p->dst.array].p.column[p->dst.column[k]].state = true;
+        if (p->function && add_rates(plan, &p->function->rates, p->dst.array, e))
+            return -1;
+    }
+    for (size_t a = 0; plan->scheme && a < plan->n_array; a++)
+        if (add_rates(plan, &plan->scheme->rates, a, e))
+            return -1;
+    if (add_integrator_columns(plan, e) || find_required(plan, e))
+        return -1;
+    for (size_t a = 0; a < plan->n_array; a++) {
+        struct plan_array *pa = &plan->array[a];
+        for (size_t k = 0; k < pa->n_rate; k++)
+            pa->required[pa->rate[k].property] = true;
+        for (size_t c = 0; c < pa->p.n_column; c++) {
+            pa->p.column[c].state |= pa->required[c];
+            if (isinf(pa->initial[c]))
+                pa->initial[c] = 0.0;
+            pa->p.column[c].output = !strchr(pa->p.column[c].name, '.');
+        }
+    }
+    return 0;
+}

@@ -1,0 +1,218 @@
+/* plan/explain.c -- the plan told: for people as a database tells a query plan, for machines as JSON. */
+#include "plan/plan.h"
+#include "scene/fill.h"
+#include <math.h>
+#include <string.h>
+
+static const char *type_name(uint32_t type)
+{
+    switch (type) {
+    case SPH_SCALAR:
+        return "scalar";
+    case SPH_VECTOR:
+        return "vector";
+    case SPH_SYM:
+        return "symmetric tensor";
+    case SPH_MATRIX:
+        return "matrix";
+    case SPH_INT32:
+        return "int32";
+    default:
+        return "int64";
+    }
+}
+
+/* True neighbours of a particle in a uniform filling at h_factor * spacing. */
+static double neighbours(const struct plan *plan, const struct plan_array *a)
+{
+    static const double ball[4] = {1.0, 2.0, 3.14159265358979324, 4.18879020478639098};
+    return ball[plan->dim] * pow(plan->kernel.support * plan->reach_scale * a->scene->h_factor, plan->dim);
+}
+
+static uint64_t count(const struct plan *plan, size_t array)
+{
+    const struct plan_array *a = &plan->array[array];
+    uint64_t n = 0;
+    struct error ignored = {0};
+    if (a->p.n > 0)
+        return a->p.n;
+    return fill_count(plan->scene, array, &n, &ignored) ? 0 : n;
+}
+
+/* A comma list that breaks before column 80. */
+struct line {
+    FILE *out;
+    int column, indent;
+    bool any;
+};
+
+static void item(struct line *l, const char *word)
+{
+    int length = (int)strlen(word);
+    if (l->any)
+        l->column += fprintf(l->out, ",");
+    if (l->column + length + 1 > 78)
+        l->column = fprintf(l->out, "\n%*s", l->indent, "") - 1;
+    l->column += fprintf(l->out, " %s", word);
+    l->any = true;
+}
+
+static void print_access(const struct plan *plan, const struct pass *p, const char *title, uint32_t access,
+                         bool source, FILE *out)
+{
+    struct line l = {.out = out, .indent = 17};
+    for (uint32_t k = 0; k < p->use.item->props.count; k++) {
+        const sph_prop *prop = list_at(&p->use.item->props, k);
+        if (!(prop->access & access))
+            continue;
+        if (!l.any)
+            l.column = fprintf(out, "      %-11s", title);
+        item(&l, prop->name);
+    }
+    if (source && l.any) {
+        fprintf(out, "  of");
+        for (size_t s = 0; s < p->n_src; s++)
+            fprintf(out, " %s", plan->array[p->src[s].array].p.name);
+    }
+    if (l.any)
+        fprintf(out, "\n");
+}
+
+static void print_pass(const struct plan *plan, const struct pass *p, size_t number, FILE *out)
+{
+    const char *shape = p->shape == SPH_POINT ? "point"
+                        : p->reach == SPH_GATHER ? "pair, r < support h_i"
+                                                 : "pair, r < support max(h_i, h_j)";
+    fprintf(out, "  %2zu  %-28s %-9s %s%s\n", number, p->name, moment_name[p->moment], shape,
+            p->max_sweeps ? ", repeated" : "");
+    print_access(plan, p, "reads", SPH_DST_READ, false, out);
+    print_access(plan, p, "from pairs", SPH_SRC_READ, true, out);
+    print_access(plan, p, "writes", SPH_DST_WRITE, false, out);
+    print_access(plan, p, "sums", SPH_DST_SUM, false, out);
+    print_access(plan, p, "takes min", SPH_DST_MIN, false, out);
+    print_access(plan, p, "takes max", SPH_DST_MAX, false, out);
+}
+
+static void print_array(const struct plan *plan, size_t index, FILE *out)
+{
+    const struct plan_array *a = &plan->array[index];
+    fprintf(out, "  %s: %llu particles, %zu columns, %zu bytes a particle (lists: about %.0f more)\n", a->p.name,
+            (unsigned long long)count(plan, index), a->p.n_column, particles_bytes(&a->p),
+            plan->has_kernel ? 4.0 * (neighbours(plan, a) * 2.0) / SPH_LANES * 2.0 : 0.0);
+    for (size_t c = 0; c < a->p.n_column; c++) {
+        const struct column *column = &a->p.column[c];
+        fprintf(out, "    %-8s %-17s %-6s %-12s %s\n", column->name, type_name(column->type),
+                column->state ? "state" : "", column->unit ? column->unit : "", column->doc ? column->doc : "");
+    }
+    for (size_t k = 0; k < a->n_rate; k++)
+        fprintf(out, "    %s advances with %s (%s)\n", a->p.column[a->rate[k].property].name,
+                a->p.column[a->rate[k].rate].name, a->rate[k].kind == SPH_DRIFT ? "drift" : "kick");
+}
+
+/* Which columns the ghosts need anew, and after which pass. */
+static void print_exchanges(const struct plan *plan, FILE *out)
+{
+    bool sides = false;
+    for (int c = 0; c < plan->dim; c++)
+        for (int k = 0; k < 2; k++)
+            sides = sides || (plan->scene->box.bounded && plan->scene->box.side[c][k] != SIDE_OPEN);
+    if (!sides) {
+        fprintf(out, "exchanges\n  none: all sides are open, there are no ghosts\n");
+        return;
+    }
+    fprintf(out, "exchanges: columns that ghosts get anew before a pass\n");
+    for (size_t i = 0; i < plan->n_pass; i++) {
+        const struct pass *p = &plan->pass[i];
+        struct line l = {.out = out, .indent = 33};
+        for (size_t a = 0; a < plan->n_array; a++)
+            for (size_t c = 0; c < plan->array[a].p.n_column; c++) {
+                if (!pass_reads_source(p, a, (int)c))
+                    continue;
+                if (!l.any)
+                    l.column = fprintf(out, "  %-30s", p->name);
+                item(&l, plan->array[a].p.column[c].name);
+            }
+        if (l.any)
+            fprintf(out, "\n");
+    }
+}
+
+static double expected_pairs(const struct plan *plan)
+{
+    double pairs = 0.0;
+    for (size_t i = 0; i < plan->n_pass; i++) {
+        const struct pass *p = &plan->pass[i];
+        if (p->shape == SPH_PAIR && p->moment == MOMENT_EVALUATE)
+            pairs += (double)count(plan, p->dst.array) * neighbours(plan, &plan->array[p->dst.array]) *
+                     (p->max_sweeps ? 2.0 : 1.0);
+    }
+    return pairs * plan->integrator->evaluations;
+}
+
+void plan_print(const struct plan *plan, FILE *out)
+{
+    fprintf(out, "%s\n", plan->scene->title ? plan->scene->title : "untitled");
+    fprintf(out, "  scheme %s, kernel %s, integrator %s, %d dimension%s, cfl %g\n",
+            plan->scheme_name ? plan->scheme_name : "none", plan->kernel_name ? plan->kernel_name : "none",
+            plan->integrator->name, plan->dim, plan->dim == 1 ? "" : "s", plan->cfl);
+    fprintf(out, "arrays\n");
+    for (size_t a = 0; a < plan->n_array; a++)
+        print_array(plan, a, out);
+    fprintf(out, "passes\n");
+    for (size_t i = 0; i < plan->n_pass; i++)
+        print_pass(plan, &plan->pass[i], i + 1, out);
+    print_exchanges(plan, out);
+    fprintf(out, "reductions\n");
+    for (size_t i = 0; i < plan->n_reduction; i++) {
+        const sph_reduction *d = plan->reduction[i].declared;
+        static const char *const op[] = {"", "minimum", "maximum", "sum"};
+        static const char *const use[] = {"shown in the log", "bounds the time step", "internal energy",
+                                          "potential energy"};
+        fprintf(out, "  %-12s %s of %s: %s\n", d->name, op[d->op & 3u], d->property, use[d->use & 3u]);
+    }
+    double pairs = expected_pairs(plan);
+    fprintf(out, "expected\n  pairs a step     %.3g\n", pairs);
+    if (isfinite(pairs) && pairs > 0.0)
+        fprintf(out, "  seconds a step   %.2g (at 5 ns a pair, one thread)\n", 5e-9 * pairs);
+}
+
+static void add_names(cJSON *to, const char *key, const struct pass *p, uint32_t access)
+{
+    cJSON *list = cJSON_AddArrayToObject(to, key);
+    for (uint32_t k = 0; list && k < p->use.item->props.count; k++) {
+        const sph_prop *prop = list_at(&p->use.item->props, k);
+        if (prop->access & access)
+            cJSON_AddItemToArray(list, cJSON_CreateString(prop->name));
+    }
+}
+
+cJSON *plan_json(const struct plan *plan)
+{
+    cJSON *root = cJSON_CreateObject();
+    cJSON *arrays = cJSON_AddObjectToObject(root, "arrays");
+    for (size_t a = 0; arrays && a < plan->n_array; a++) {
+        const struct particles *p = &plan->array[a].p;
+        cJSON *one = cJSON_AddObjectToObject(arrays, p->name);
+        cJSON_AddNumberToObject(one, "bytes_per_particle", (double)particles_bytes(p));
+        cJSON *columns = cJSON_AddArrayToObject(one, "columns");
+        for (size_t c = 0; columns && c < p->n_column; c++)
+            cJSON_AddItemToArray(columns, cJSON_CreateString(p->column[c].name));
+    }
+    cJSON *passes = cJSON_AddArrayToObject(root, "passes");
+    for (size_t i = 0; passes && i < plan->n_pass; i++) {
+        const struct pass *p = &plan->pass[i];
+        cJSON *one = cJSON_CreateObject();
+        cJSON_AddStringToObject(one, "name", p->name);
+        cJSON_AddStringToObject(one, "at", moment_name[p->moment]);
+        cJSON_AddStringToObject(one, "shape", p->shape == SPH_POINT ? "point" : "pair");
+        add_names(one, "reads", p, SPH_DST_READ);
+        add_names(one, "reads_sources", p, SPH_SRC_READ);
+        add_names(one, "writes", p, SPH_DST_WRITE | SPH_DST_SUM | SPH_DST_MAX | SPH_DST_MIN);
+        cJSON_AddItemToArray(passes, one);
+    }
+    cJSON_AddStringToObject(root, "integrator", plan->integrator->name);
+    cJSON_AddStringToObject(root, "kernel", plan->kernel_name ? plan->kernel_name : "");
+    cJSON_AddNumberToObject(root, "cfl", plan->cfl);
+    cJSON_AddNumberToObject(root, "expected_pairs_per_step", expected_pairs(plan));
+    return root;
+}

@@ -1,0 +1,27 @@
+/* plan/inside.h -- the parts of plan_make, in the order in which they run; for core/plan alone. */
+#ifndef PLAN_INSIDE_H
+#define PLAN_INSIDE_H
+
+#include "plan/plan.h"
+
+/* recipe.c: the scheme's steps, edited by the scene. */
+int recipe_make(struct plan *plan, struct error *e);
+void recipe_free(struct plan *plan);
+/* columns.c: arrays with the columns that every scene has, and the user's own. */
+int columns_begin(struct plan *plan, bool guarded, struct error *e);
+/* bind.c: steps to passes, one for each destination array. */
+int bind_passes(struct plan *plan, struct error *e);
+void bind_free(struct plan *plan);
+/* columns.c: which columns are state, which need an initial value, the rates, the integrator's own. */
+int columns_finish(struct plan *plan, struct error *e);
+
+/* Fails at a scene node with " (did you mean ...)" over a registry kind's names. */
+int plan_unknown(const struct plan *plan, const cJSON *node, enum kind kind, const char *name,
+                 struct error *e);
+/* A printf into fresh memory with its failure told. */
+int plan_name(char **out, struct error *e, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+/* Grows an array by one zeroed element and returns it, or NULL. */
+void *plan_grow(void *array, size_t *n, size_t size);
+
+#endif

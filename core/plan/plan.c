@@ -1,0 +1,213 @@
+/* plan/plan.c -- plan_make: names to items, items to passes; plan_fill: particles and their first state. */
+#include "plan/plan.h"
+#include "base/text.h"
+#include "plan/inside.h"
+#include "registry/kernel_form.h"
+#include "scene/fill.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int find_scheme(struct plan *plan, struct error *e)
+{
+    const struct scene *s = plan->scene;
+    plan->cfl = s->time.cfl;
+    plan->scheme_name = s->scheme.name;
+    if (s->scheme.name) {
+        const struct entry *entry = registry_find(plan->registry, KIND_SCHEME, s->scheme.name);
+        if (!entry)
+            return plan_unknown(plan, s->scheme.node, KIND_SCHEME, s->scheme.name, e);
+        plan->scheme = entry_scheme(entry);
+        if (!(plan->scheme->item->dims & (1u << plan->dim)))
+            return document_fail(s->doc, s->scheme.node, e, "the scheme \"%s\" does not work in %d dimensions",
+                                 s->scheme.name, plan->dim);
+        if (isnan(plan->cfl))
+            plan->cfl = plan->scheme->cfl;
+    }
+    if (isnan(plan->cfl) || plan->cfl <= 0.0)
+        plan->cfl = 0.3;
+    return 0;
+}
+
+static int find_kernel(struct plan *plan, struct error *e)
+{
+    const struct scene *s = plan->scene;
+    plan->kernel_name = s->kernel.name ? s->kernel.name : plan->scheme ? plan->scheme->kernel : NULL;
+    if (!plan->kernel_name)
+        return 0;
+    const cJSON *node = s->kernel.node ? s->kernel.node : s->scheme.node;
+    const struct entry *entry = registry_find(plan->registry, KIND_KERNEL, plan->kernel_name);
+    if (!entry)
+        return plan_unknown(plan, node, KIND_KERNEL, plan->kernel_name, e);
+    if (!(entry->item->dims & (1u << plan->dim)))
+        return document_fail(s->doc, node, e, "the kernel \"%s\" does not work in %d dimensions",
+                             plan->kernel_name, plan->dim);
+    plan->has_kernel = true;
+    return kernel_form_make(&plan->kernel, entry_kernel(entry), plan->dim, e);
+}
+
+static int find_integrator(struct plan *plan, struct error *e)
+{
+    const struct scene *s = plan->scene;
+    const char *name = s->time.integrator ? s->time.integrator
+                       : plan->scheme     ? plan->scheme->integrator
+                                          : "kdk";
+    plan->integrator = integrator_find(name);
+    if (plan->integrator)
+        return 0;
+    size_t n;
+    const char *const *known = integrator_names(&n);
+    char near[256];
+    return document_fail(s->doc, s->time.node, e, "there is no integrator \"%s\"%s", name,
+                         text_suggest(near, sizeof near, name, known, n));
+}
+
+/* A scheme's member that no step declares is a slip of the pen. */
+static int check_scheme_members(const struct plan *plan, struct error *e)
+{
+    const cJSON *member;
+    cJSON_ArrayForEach(member, plan->scene->scheme.params)
+    {
+        bool known = false;
+        const char *name[256];
+        size_t n = 0;
+        for (size_t i = 0; i < plan->n_pass; i++) {
+            const sph_item *item = plan->pass[i].use.item;
+            if (!plan->pass[i].function)
+                continue;
+            known = known || use_declares(&plan->pass[i].use, member->string);
+            for (uint32_t k = 0; k < item->params.count && n < 256; k++) {
+                name[n] = ((const sph_param *)list_at(&item->params, k))->name;
+                bool seen = false;
+                for (size_t m = 0; m < n; m++)
+                    seen = seen || strcmp(name[m], name[n]) == 0;
+                n += !seen;
+            }
+        }
+        char near[512];
+        if (!known)
+            return document_fail(plan->scene->doc, member, e, "the scheme \"%s\" has no parameter \"%s\"%s",
+                                 plan->scheme_name ? plan->scheme_name : "", member->string,
+                                 text_suggest(near, sizeof near, member->string, name, n));
+    }
+    return 0;
+}
+
+static int bind_exact(struct plan *plan, struct error *e)
+{
+    const struct scene *s = plan->scene;
+    plan->exact = calloc(s->n_compare ? s->n_compare : 1, sizeof *plan->exact);
+    if (!plan->exact)
+        return error_memory(e, "the plan", s->n_compare * sizeof *plan->exact);
+    for (size_t i = 0; i < s->n_compare; i++) {
+        const struct scene_compare *c = &s->compare[i];
+        const struct entry *entry = registry_find(plan->registry, KIND_EXACT, c->exact);
+        if (!entry)
+            return plan_unknown(plan, c->node, KIND_EXACT, c->exact, e);
+        const sph_exact *x = entry_exact(entry);
+        if (!(x->item->dims & (1u << plan->dim)))
+            return document_fail(s->doc, c->node, e, "the exact solution \"%s\" is not for %d dimensions",
+                                 c->exact, plan->dim);
+        struct use *u = &plan->exact[i];
+        if (use_init(u, entry, x->item, x->life, e))
+            return -1;
+        if (use_set_all(u, s->doc, c->params, e))
+            return -1;
+        struct error why = {0};
+        if (config_check(&u->config, &why))
+            return document_fail(s->doc, c->node, e, "%s", why.text);
+        if (use_create(u, plan->registry, plan->dim, e))
+            return -1;
+    }
+    return 0;
+}
+
+/* The names of arrays and properties in compare and probes exist. */
+static int check_reports(const struct plan *plan, struct error *e);
+
+int plan_make(struct plan *plan, struct registry *r, const struct scene *s, bool guarded,
+              struct error *e)
+{
+    *plan = (struct plan){.registry = r, .scene = s, .dim = s->dim};
+    if (find_scheme(plan, e) || find_kernel(plan, e) || find_integrator(plan, e) ||
+        recipe_make(plan, e) || columns_begin(plan, guarded, e) || bind_passes(plan, e) ||
+        check_scheme_members(plan, e) || columns_finish(plan, e) || bind_exact(plan, e) ||
+        check_reports(plan, e))
+        return -1;
+    return 0;
+}
+
+static int array_named(const struct plan *plan, const char *name)
+{
+    for (size_t a = 0; a < plan->n_array; a++)
+        if (strcmp(plan->array[a].p.name, name) == 0)
+            return (int)a;
+    return -1;
+}
+
+static int check_property(const struct plan *plan, int array, const char *of, const cJSON *node,
+                          struct error *e)
+{
+    const struct particles *p = &plan->array[array].p;
+    char plain[128];
+    size_t length = strcspn(of, ".");
+    if (length < sizeof plain) {
+        memcpy(plain, of, length);
+        plain[length] = '\0';
+        if (particles_find(p, plain) >= 0)
+            return 0;
+    }
+    const char *name[128];
+    size_t n = 0;
+    for (size_t c = 0; c < p->n_column && n < 128; c++)
+        if (p->column[c].output)
+            name[n++] = p->column[c].name;
+    char near[512];
+    return document_fail(plan->scene->doc, node, e, "array \"%s\" has no property \"%s\"%s", p->name, of,
+                         text_suggest(near, sizeof near, of, name, n));
+}
+
+static int check_reports(const struct plan *plan, struct error *e)
+{
+    const struct scene *s = plan->scene;
+    for (size_t i = 0; i < s->n_compare; i++) {
+        int a = array_named(plan, s->compare[i].array);
+        if (a < 0)
+            return document_fail(s->doc, s->compare[i].node, e, "there is no particle array \"%s\"",
+                                 s->compare[i].array);
+        for (size_t k = 0; k < s->compare[i].n_fields; k++)
+            if (check_property(plan, a, s->compare[i].fields[k], s->compare[i].node, e))
+                return -1;
+    }
+    for (size_t i = 0; i < s->n_probe; i++) {
+        int a = array_named(plan, s->probe[i].array);
+        if (a < 0)
+            return document_fail(s->doc, s->probe[i].node, e, "there is no particle array \"%s\"",
+                                 s->probe[i].array);
+        if (check_property(plan, a, s->probe[i].of, s->probe[i].node, e))
+            return -1;
+    }
+    return 0;
+}
+
+void plan_free(struct plan *plan)
+{
+    for (size_t i = 0; plan->exact && i < plan->scene->n_compare; i++)
+        if (plan->exact[i].item)
+            use_fini(&plan->exact[i], plan->registry);
+    free(plan->exact);
+    bind_free(plan);
+    recipe_free(plan);
+    for (size_t a = 0; a < plan->n_array; a++) {
+        struct plan_array *pa = &plan->array[a];
+        if (pa->eos.item)
+            use_fini(&pa->eos, plan->registry);
+        particles_fini(&pa->p);
+        free(pa->rate);
+        free(pa->given);
+        free(pa->required);
+        free(pa->initial);
+    }
+    free(plan->array);
+    *plan = (struct plan){0};
+}

@@ -1,0 +1,138 @@
+/* plan/plan.h -- the scene compiled against the registry: the fewest columns, passes and exchanges that
+ * it needs, from what the functions declare. The plan knows no physics: only declarations. */
+#ifndef PLAN_PLAN_H
+#define PLAN_PLAN_H
+
+#include "integrators/integrator.h"
+#include "particles/particles.h"
+#include "registry/registry.h"
+#include "scene/scene.h"
+#include <cjson/cJSON.h>
+#include <stdio.h>
+
+enum moment { MOMENT_START, MOMENT_EVALUATE, MOMENT_FINISH, MOMENT_COUNT };
+extern const char *const moment_name[MOMENT_COUNT];
+
+/* One configured use of an item: its parameters and the plugin's own state. */
+struct use {
+    const struct entry *entry;
+    const sph_item *item;
+    const sph_life *life; /* or NULL */
+    struct sph_config config;
+    void *state;
+};
+
+/* A step of the recipe, before it is bound to arrays. */
+struct step {
+    char *name;
+    enum moment moment;
+    enum kind kind;         /* KIND_FUNCTION or KIND_EOS (the material's own) */
+    const cJSON *node;      /* the edit that put it there, or NULL */
+    const cJSON *params;    /* its own parameters, or NULL */
+    const char **to, **from; /* not owned */
+    size_t n_to, n_from;    /* 0: all */
+    const char *operation, *of; /* what the scene says it is; checked; or NULL */
+};
+
+/* The columns of a pass in one array, in the item's declared order. */
+struct binding {
+    size_t array;
+    int *column;
+};
+
+/* One function (or equation of state) on one destination array, over all its sources. */
+struct pass {
+    char *name;            /* "density(fluid)" */
+    const char *step;
+    enum moment moment;
+    struct use use;
+    uint32_t shape;        /* SPH_POINT or SPH_PAIR */
+    sph_range_fn before, run, after;
+    uint32_t reach;
+    uint32_t max_sweeps;
+    int unfinished;        /* column of the destination, or -1 */
+    const sph_function *function; /* NULL for an equation of state */
+    struct binding dst;
+    struct binding *src;
+    size_t n_src;
+    /* Cost, filled in by the run. */
+    double seconds;
+    uint64_t sweeps, pairs;
+};
+
+/* A rate of an array: column y advances with column r. */
+struct rate {
+    int property, rate;
+    uint32_t kind;         /* SPH_KICK or SPH_DRIFT */
+};
+
+/* A global reduction of a pass's column. */
+struct reduction {
+    const sph_reduction *declared;
+    size_t pass, array;
+    int column;
+};
+
+struct plan_array {
+    struct particles p;
+    const struct scene_array *scene;
+    struct rate *rate;
+    size_t n_rate;
+    bool *given;           /* per column: set by a field */
+    bool *required;        /* per column: an initial value is needed */
+    double *initial;       /* per column: declared default; NaN: none */
+    struct use eos;        /* of its material; entry NULL: none */
+    int position, velocity, smoothing, mass, id; /* columns; velocity: the rate of the position, or -1 */
+};
+
+struct plan {
+    struct registry *registry;
+    const struct scene *scene;
+    int dim;
+    const sph_scheme *scheme;
+    const char *scheme_name, *kernel_name;
+    bool has_kernel;
+    sph_kernel_form kernel;
+    const struct integrator *integrator;
+    double cfl;
+    struct plan_array *array;
+    size_t n_array;
+    struct step *step;
+    size_t n_step;
+    struct pass *pass;
+    size_t n_pass;
+    struct reduction *reduction;
+    size_t n_reduction;
+    uint32_t *pair;        /* [dst * n_array + src]: 0 no function asks, SPH_GATHER, SPH_SYMMETRIC */
+    double reach_scale;    /* largest over the functions */
+    struct use *exact;     /* of scene.compare, one each */
+};
+
+/* Resolves every name, checks every parameter, adds every column. guarded: for the audit. Particles are
+ * not made yet. */
+int plan_make(struct plan *plan, struct registry *r, const struct scene *s, bool guarded,
+              struct error *e);
+/* Makes the particles and completes their initial state (the inverse equation of state). */
+int plan_fill(struct plan *plan, struct error *e);
+void plan_free(struct plan *plan);
+
+/* Columns of array a that a pass reads from it, writes in it. */
+bool pass_writes(const struct pass *p, size_t array, int column);
+bool pass_reads_source(const struct pass *p, size_t array, int column);
+
+/* For people (80 columns) and for machines. */
+void plan_print(const struct plan *plan, FILE *out);
+cJSON *plan_json(const struct plan *plan);
+
+/* One use of an item: see struct use. */
+int use_init(struct use *u, const struct entry *entry, const sph_item *item, const sph_life *life,
+             struct error *e);
+int use_create(struct use *u, struct registry *r, int dim, struct error *e);
+void use_fini(struct use *u, struct registry *r);
+/* One parameter from a JSON member of the item's; errors with their place. */
+int use_set(struct use *u, const struct document *d, const cJSON *member, struct error *e);
+/* All members of an object (NULL: none); one that the item does not declare is an error. */
+int use_set_all(struct use *u, const struct document *d, const cJSON *members, struct error *e);
+bool use_declares(const struct use *u, const char *name);
+
+#endif

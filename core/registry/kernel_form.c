@@ -1,0 +1,112 @@
+/* registry/kernel_form.c -- compiles kernels (see kernel_form.h). Pure arithmetic on its arguments. */
+#include "registry/kernel_form.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The piece of a knot, made in its place (knots fall) if it is new; NULL if there is no room. */
+static sph_kernel_piece *piece_at(sph_kernel_form *f, double knot)
+{
+    uint32_t i = 0;
+
+    while (i < f->n_pieces && f->piece[i].knot > knot)
+        i++;
+    if (i < f->n_pieces && f->piece[i].knot == knot)
+        return &f->piece[i];
+    if (f->n_pieces == SPH_KERNEL_KNOTS)
+        return NULL;
+    memmove(&f->piece[i + 1], &f->piece[i], (f->n_pieces - i) * sizeof(f->piece[0]));
+    f->n_pieces++;
+    f->piece[i] = (sph_kernel_piece){.knot = knot};
+    return &f->piece[i];
+}
+
+/* Adds coef t^power to P; its least power is known. */
+static int add_term(sph_kernel_piece *p, const sph_kernel_term *t, struct error *e)
+{
+    const uint32_t i = t->power - p->power;
+
+    if (i >= SPH_KERNEL_COEFS)
+        return error_set(e, EXIT_REFUSED,
+                         "terms with knot %g span the powers %u to %u, but at most %u in a row are "
+                         "held",
+                         t->knot, p->power, t->power, SPH_KERNEL_COEFS);
+    p->c[i] += t->coef;
+    if (p->n_coef < i + 1)
+        p->n_coef = i + 1;
+    return 0;
+}
+
+/* dP/dq = -dP/dt, since t = knot - q. */
+static void derive(sph_kernel_piece *p)
+{
+    p->dpower = p->power - 1;
+    p->dn_coef = p->n_coef;
+    for (uint32_t i = 0; i < p->n_coef; i++)
+        p->d[i] = -(double)(p->power + i) * p->c[i];
+}
+
+int kernel_form_make(sph_kernel_form *out, const sph_kernel *k, int dim, struct error *e)
+{
+    const sph_kernel_term *t;
+    const sph_list *terms;
+
+    memset(out, 0, sizeof(*out));
+    if (dim < 1 || dim > 3 || !(k->item->dims >> dim & 1u))
+        return error_set(e, EXIT_USAGE, "kernel \"%s\" does not work in %d dimensions",
+                         k->item->name, dim);
+    terms = &k->terms[dim];
+    t = terms->data;
+    out->size = (uint32_t)sizeof(*out);
+    out->dim = (uint32_t)dim;
+    out->support = k->support;
+    out->norm = k->norm[dim];
+    for (uint32_t i = 0; i < terms->count; i++) {
+        sph_kernel_piece *p = piece_at(out, t[i].knot);
+
+        if (!p)
+            return error_set(e, EXIT_REFUSED, "terms[%d]: more than %u different knots", dim,
+                             SPH_KERNEL_KNOTS);
+        if (t[i].power < 1)
+            return error_set(e, EXIT_REFUSED, "power of terms[%d][%u] is 0", dim, i);
+        if (p->power == 0 || t[i].power < p->power)
+            p->power = t[i].power;
+    }
+    for (uint32_t i = 0; i < terms->count; i++)
+        if (add_term(piece_at(out, t[i].knot), &t[i], e))
+            return -1;
+    for (uint32_t i = 0; i < out->n_pieces; i++)
+        derive(&out->piece[i]);
+    return 0;
+}
+
+static double clamped(double knot, uint32_t power, const double *c, uint32_t n, double q)
+{
+    const double t = knot - q;
+    double sum = 0;
+
+    if (t <= 0)
+        return 0;
+    for (uint32_t i = n; i-- > 0;)
+        sum = sum * t + c[i];
+    return sum * pow(t, power);
+}
+
+double kernel_form_w(const sph_kernel_form *f, double q)
+{
+    double sum = 0;
+
+    for (uint32_t i = 0; i < f->n_pieces; i++)
+        sum += clamped(f->piece[i].knot, f->piece[i].power, f->piece[i].c, f->piece[i].n_coef, q);
+    return f->norm * sum;
+}
+
+double kernel_form_dw(const sph_kernel_form *f, double q)
+{
+    double sum = 0;
+
+    for (uint32_t i = 0; i < f->n_pieces; i++)
+        sum +=
+            clamped(f->piece[i].knot, f->piece[i].dpower, f->piece[i].d, f->piece[i].dn_coef, q);
+    return f->norm * sum;
+}

@@ -1,0 +1,69 @@
+/* run/run.h -- a plan in motion: neighbour lists and ghosts kept right, passes executed, columns advanced.
+ * Data flows one way: the loop (loop.c) calls advance.c, which calls passes.c, which calls lists.c. */
+#ifndef RUN_RUN_H
+#define RUN_RUN_H
+
+#include "domain/sides.h"
+#include "neighbours/neighbours.h"
+#include "plan/plan.h"
+
+struct audit;
+
+/* Sums over all real particles. */
+struct totals {
+    double mass, kinetic, internal, potential;
+    double momentum[3], angular[3]; /* scales: sums of absolute values, for relative drifts */
+    double momentum_scale, angular_scale;
+    bool has_energy;
+};
+
+struct run_cost {
+    double loop, neighbour, integrate, io;
+    uint64_t particle_updates, pairs, list_builds, sorts, unfinished;
+};
+
+struct run {
+    struct plan *plan;
+    int threads;
+    double skin;
+    double time, dt, dt_bound; /* dt_bound: what the reductions allow, before cfl */
+    uint64_t step;
+    /* lists.c */
+    struct ghosts *ghosts;     /* [array] */
+    struct group_list *list;   /* [dst * n_array + src] */
+    double **reference;        /* [array]: dim + 1 planes of positions and h when the lists were made */
+    size_t *reference_n;
+    bool **stale;              /* [array][column]: ghosts hold old values */
+    bool lists_made, lists_suspect; /* suspect: something moved or grew since they were last checked */
+    uint64_t builds_since_sort;
+    double *reduced;           /* [reduction]: last value */
+    struct run_cost cost;
+    struct audit *audit;       /* NULL: off */
+};
+
+int run_init(struct run *r, struct plan *plan, int threads, bool audit, struct error *e);
+void run_free(struct run *r);
+
+/* lists.c. At the start of an evaluation: sorts, makes ghosts and lists if they are no longer right. In its
+ * midst (`within`): only ghosts and lists, since other columns hold results already. */
+int run_lists(struct run *r, bool within, struct error *e);
+/* Ghosts of this column get their parents' values, if they hold old ones. */
+void run_refresh(struct run *r, size_t array, int column);
+size_t run_list_bytes(const struct run *r);
+
+/* passes.c. All passes of a moment, in order. */
+int run_passes(struct run *r, enum moment moment, struct error *e);
+
+/* advance.c. One step of the integrator with dt = r->dt. */
+int run_advance(struct run *r, struct error *e);
+
+/* totals.c */
+void run_totals(const struct run *r, struct totals *t);
+
+/* audit.c: proves that passes touch only what they declare. */
+int audit_open(struct run *r, struct error *e);
+void audit_close(struct run *r);
+void audit_begin(struct run *r, const struct pass *p);
+int audit_end(struct run *r, const struct pass *p, struct error *e);
+
+#endif

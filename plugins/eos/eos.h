@@ -1,0 +1,9 @@
+/* eos.h -- the equations of state of this plugin. */
+#ifndef EOS_H
+#define EOS_H
+
+#include <sph/eos.h>
+
+extern const sph_eos ideal_gas;
+
+#endif

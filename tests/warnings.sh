@@ -1,0 +1,34 @@
+#!/bin/sh
+# gcc and clang compile every source without a warning. The flags are those of the build.
+# PART_CPPFLAGS and PART_CFLAGS are set by tests/fragment.am.
+set -eu
+: "${top_srcdir:?}" "${top_builddir:?}"
+cd "$top_builddir"
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+status=0
+count=0
+for compiler in gcc clang; do
+    if ! command -v $compiler >/dev/null; then
+        echo "no $compiler here: not tried"
+        continue
+    fi
+    count=$((count + 1))
+    find "$top_srcdir/core" "$top_srcdir/plugins" "$top_srcdir/tests/unit" -name '*.c' | sort |
+        while read -r source; do
+            case $source in
+            */plugins/*) flags="$PLUGIN_CPPFLAGS $PLUGIN_CFLAGS" ;;
+            */tests/*) flags="$CORE_CPPFLAGS $CORE_CFLAGS $CMOCKA_CFLAGS" ;;
+            *) flags="$CORE_CPPFLAGS $CORE_CFLAGS" ;;
+            esac
+            eval "$compiler $flags -Werror -c -o $scratch/object.o $source" >>"$scratch/$compiler" 2>&1 ||
+                echo "$compiler: $source" >>"$scratch/failed"
+        done
+    if [ -s "$scratch/$compiler" ]; then
+        cat "$scratch/$compiler"
+        status=1
+    fi
+done
+[ ! -s "$scratch/failed" ] || { cat "$scratch/failed"; status=1; }
+[ $count -gt 0 ] || exit 77
+exit $status

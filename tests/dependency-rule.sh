@@ -9,7 +9,7 @@ set -eu
 
 # Schemes, solvers and test problems by name. The names of plugins are added, but for those that are
 # words of the ABI: a kernel, an equation of state or an exact solution is a kind the core knows.
-names='gsph|mpm|adke|wcsph|crksph|edac|tvf|godunov|riemann|hllc|inutsuka|monaghan|balsara|noh|sod'
+names='gsph|mpm|adke|wcsph|crksph|edac|tvf|godunov|riemann|hllc|inutsuka|balsara|noh|sod'
 names="$names|sedov|gresho|taylor-green|dam-break|poiseuille|couette|wendland|gaussian|cubic-spline"
 names="$names|ideal-gas|tait|artificial[- ]viscosity"
 kinds=' eos exact kernels boundaries '
@@ -77,7 +77,6 @@ clean=$(wc -l <"$scratch/found")
 plugin=$(cd "$top_srcdir" && find plugins -name '*.c' | sort | sed 1q)
 core=$(cd "$top_srcdir" && find core -name '*.c' | sort | sed 1q)
 header=$(cd "$top_srcdir/core" && find . -name '*.h' | sort | sed '1q' | sed 's|^\./||')
-own=$(basename "$(dirname "$(cd "$top_srcdir" && find plugins -path '*/gsph/*.c' | sed 1q)")")
 
 poison "$plugin" "#include \"$header\""
 poison "$plugin" "#include <$header>"
@@ -87,7 +86,7 @@ poison sdk/sph/abi.h "#include <$header>"
 poison sdk/sph/abi.h '#include "local.h"'
 poison "$core" '#include "plugins/gsph/gsph.h"'
 poison "$core" '#include <sph/no-such-header.h>'
-poison "$core" "/* as $own does */"
+poison "$core" "/* as gsph does */"
 poison "$core" '    if (strcmp(name, "Riemann") == 0)'
 poison core/fragment.am '# for Noh'
 

@@ -14,10 +14,10 @@ for compiler in gcc clang; do
         continue
     fi
     count=$((count + 1))
-    find "$top_srcdir/core" "$top_srcdir/plugins" "$top_srcdir/tests/unit" -name '*.c' | sort |
+    find "$top_srcdir/core" "$top_srcdir/plugins" "$top_srcdir/tests" -name '*.c' | sort |
         while read -r source; do
             case $source in
-            */plugins/*) flags="$PLUGIN_CPPFLAGS $PLUGIN_CFLAGS" ;;
+            */plugins/*) flags="$PLUGIN_CPPFLAGS -iquote ${source%/*} $PLUGIN_CFLAGS" ;;
             */tests/*) flags="$CORE_CPPFLAGS $CORE_CFLAGS $CMOCKA_CFLAGS" ;;
             *) flags="$CORE_CPPFLAGS $CORE_CFLAGS" ;;
             esac

@@ -70,9 +70,9 @@ const char *text_nearest(const char *word, const char *const *known, size_t n)
 
 const char *text_suggest(char *out, size_t size, const char *word, const char *const *known, size_t n)
 {
-    static const char more[] = ", ...";
+    static const char intro[] = "; known are: ", more[] = ", ...";
     const char *nearest = text_nearest(word, known, n);
-    size_t used;
+    size_t used, whole = sizeof intro;
 
     if (size == 0) {
         return out;
@@ -89,16 +89,15 @@ const char *text_suggest(char *out, size_t size, const char *word, const char *c
     if (n == 0) {
         return out;
     }
-    used = (size_t)snprintf(out, size, "; known are: ");
-    if (used >= size) {
-        out[0] = '\0';
-        return out;
+    for (size_t k = 0; k < n; k++) {
+        whole += strlen(known[k]) + (k > 0 ? 2 : 0);
     }
+    used = (size_t)snprintf(out, size, "%s", intro);
     for (size_t k = 0; k < n; k++) {
         size_t need = strlen(known[k]) + (k > 0 ? 2 : 0);
-        size_t keep = k + 1 < n ? sizeof more - 1 : 0; /* so that the list can still be cut */
 
-        if (used + need + keep >= size) {
+        /* Room for this one, and for cutting the list after it. */
+        if (whole > size && used + need + sizeof more > size) {
             /* With the first name cut off there is no list at all. */
             snprintf(k > 0 ? out + used : out, k > 0 ? size - used : size, "%s", k > 0 ? more : "");
             return out;

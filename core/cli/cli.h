@@ -1,5 +1,5 @@
-/* cli/cli.h -- the commands of sph. Each parses its own arguments (argp), prints its own errors with
- * cli_error, and returns the exit code (enum exit_code). argv[0] is "sph COMMAND". */
+/* cli/cli.h -- the commands of sph. Each parses its own arguments (argp), prints its own errors
+ * with cli_error, and returns the exit code (enum exit_code). argv[0] is "sph COMMAND". */
 #ifndef CLI_CLI_H
 #define CLI_CLI_H
 

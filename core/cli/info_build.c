@@ -1,4 +1,4 @@
-/* cli/info_build.c -- `sph info --build` and `--devices`: what is built in, and what may be run on. */
+/* cli/info_build.c -- `sph info --build` and `--devices`: what is built in, what there is. */
 #include "config.h"
 
 #include "cli/info.h"

@@ -26,7 +26,7 @@ static cJSON *element(cJSON *array)
     return object;
 }
 
-/* "exact|hllc" */
+/* "one|other" */
 static void words(cJSON *object, const char *key, const char *list, const char *separators)
 {
     cJSON *array = cJSON_AddArrayToObject(object, key);
@@ -39,6 +39,7 @@ static void words(cJSON *object, const char *key, const char *list, const char *
             cJSON_AddItemToArray(array, cJSON_CreateString(word));
         list += n;
         list += strspn(list, separators);
+        list += strspn(list, " ");
     }
 }
 

@@ -74,7 +74,7 @@ static void unit_text(const char *unit, char *out, size_t size)
         out[0] = '\0';
 }
 
-/* "at least 0", "1 to 100", "one of exact|hllc"; empty where anything goes. */
+/* "at least 0", "1 to 100", "one of one|other"; empty where anything goes. */
 static const char *range_text(const sph_param *p, char *out, size_t size)
 {
     const bool below = p->max < 1e99; /* limits beyond that are there to keep infinity out */

@@ -7,8 +7,8 @@
 
 const char *info_type(uint32_t type)
 {
-    static const char *const name[] = {"?", "scalar", "vector", "symmetric tensor", "matrix",
-                                       "int32", "int64"};
+    static const char *const name[] = {"?",      "scalar", "vector", "symmetric tensor",
+                                       "matrix", "int32",  "int64"};
 
     return type < sizeof(name) / sizeof(name[0]) ? name[type] : name[0];
 }
@@ -18,8 +18,9 @@ const char *info_access(uint32_t access, char *out, size_t size)
     static const struct {
         uint32_t bit;
         const char *word;
-    } words[] = {{SPH_DST_READ, "read"}, {SPH_SRC_READ, "read at sources"}, {SPH_DST_WRITE, "write"},
-                 {SPH_DST_SUM, "sum"},   {SPH_DST_MAX, "max"},              {SPH_DST_MIN, "min"}};
+    } words[] = {{SPH_DST_READ, "read"},   {SPH_SRC_READ, "read at sources"},
+                 {SPH_DST_WRITE, "write"}, {SPH_DST_SUM, "sum"},
+                 {SPH_DST_MAX, "max"},     {SPH_DST_MIN, "min"}};
     size_t n = 0;
 
     out[0] = '\0';

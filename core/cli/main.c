@@ -24,9 +24,9 @@ static const struct {
 #define N_COMMANDS (sizeof(commands) / sizeof(commands[0]))
 
 /* Options whose value may be the next argument, which then is neither command nor scene. */
-static const char *const with_value[] = {"--load",   "--out",   "--set",   "--threads", "--device",
-                                         "--precision", "--resume", "--serve", "--until",
-                                         "--steps"};
+static const char *const with_value[] = {"--load",   "--out",       "--set",    "--threads",
+                                         "--device", "--precision", "--resume", "--serve",
+                                         "--until",  "--steps"};
 #define N_WITH_VALUE (sizeof(with_value) / sizeof(with_value[0]))
 
 static int help(void)
@@ -61,10 +61,13 @@ static bool is_one_of(const char *word, const char *a, const char *b)
     return strcmp(word, a) == 0 || strcmp(word, b) == 0;
 }
 
+/* Also of its beginnings, which argp takes as well: --thr 4. */
 static bool takes_next(const char *option)
 {
+    const size_t n = strlen(option);
+
     for (size_t i = 0; i < N_WITH_VALUE; i++)
-        if (strcmp(option, with_value[i]) == 0)
+        if (n > 2 && strncmp(option, with_value[i], n) == 0)
             return true;
     return false;
 }

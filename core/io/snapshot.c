@@ -403,6 +403,26 @@ static int put_array_list(struct writer *w, hid_t where)
     return result ? -1 : 0;
 }
 
+/* What the columns are, where VTK sees it (it has no eye for attributes), and as texts of fixed length,
+ * which a damaged file cannot make dangerous to read. */
+static int put_column_list(struct writer *w, hid_t where)
+{
+    const char **text = calloc(3 * w->n_column + 1, sizeof *text);
+    if (!text)
+        return error_memory(w->e, "a snapshot", 3 * w->n_column * sizeof *text);
+    const char **name = text, **unit = text + w->n_column, **doc = unit + w->n_column;
+    for (size_t i = 0; i < w->n_column; i++) {
+        name[i] = w->column[i].like->name;
+        unit[i] = w->column[i].like->unit;
+        doc[i] = w->column[i].like->doc;
+    }
+    const int result = put_texts(w, where, "column_names", name, w->n_column) ||
+                       put_texts(w, where, "column_units", unit, w->n_column) ||
+                       put_texts(w, where, "column_docs", doc, w->n_column);
+    free(text);
+    return result ? -1 : 0;
+}
+
 static int put_field_data(struct writer *w, const struct snapshot_meta *m)
 {
     const int64_t step = (int64_t)m->step;
@@ -412,7 +432,8 @@ static int put_field_data(struct writer *w, const struct snapshot_meta *m)
     const int result = put_value(w, where, "TimeValue", H5T_NATIVE_DOUBLE, &m->time, 1, false) ||
                        put_value(w, where, "Time", H5T_NATIVE_DOUBLE, &m->time, 1, false) ||
                        put_value(w, where, "Step", H5T_NATIVE_INT64, &step, 1, false) ||
-                       put_array_list(w, where) || put_text(w, where, "title", m->title) ||
+                       put_array_list(w, where) || put_column_list(w, where) ||
+                       put_text(w, where, "title", m->title) ||
                        put_text(w, where, "units", m->units) ||
                        put_text(w, where, "version", m->version) ||
                        put_text(w, where, "scene_path", m->scene_path) ||

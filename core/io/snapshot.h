@@ -21,7 +21,8 @@ struct snapshot_meta {
  *
  * Beside what VTK asks for: attributes `unit`, `doc` (and `components` of tensors) on every column
  * and on Points; `title`, `units`, `version`, `dimensions`, `time`, `step` on the file; TimeValue,
- * Time, Step, array_names, array_sizes, title, units, version and scene as field data. */
+ * Time, Step, array_names, array_sizes, column_names, column_units, column_docs, title, units,
+ * version, scene_path and scene as field data. */
 int snapshot_write(const char *path, const struct particles *arrays, size_t n,
                    const struct snapshot_meta *meta, struct error *e);
 

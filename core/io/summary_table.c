@@ -96,25 +96,21 @@ static void print_probes(const struct summary *s, FILE *out, int width)
     }
 }
 
-/* One line if it fits: the norms, then whose they are. */
+/* The norms, then against what; on one line if that fits. */
 static void print_errors(const struct summary *s, FILE *out, int width)
 {
     for (size_t i = 0; i < s->n_error; i++) {
         const struct summary_error *from = &s->error[i];
-        const struct {
-            const char *name;
-            double value;
-        } norm[] = {
-            {"l1", from->l1}, {"l1_rel", from->l1_rel}, {"l2", from->l2}, {"linf", from->linf}};
-        int column = width + 2;
+        const char *reference = from->reference ? from->reference : "";
+        char norms[128];
+        const int n = snprintf(norms, sizeof norms, "l1 %-8.3g l1_rel %-8.3g l2 %-8.3g linf %.3g",
+                               from->l1, from->l1_rel, from->l2, from->linf);
         label(out, width, "error of ", from->field);
-        for (size_t k = 0; k < sizeof norm / sizeof norm[0]; k++)
-            column += fprintf(out, "%s %-9.3g  ", norm[k].name, norm[k].value);
-        if (from->reference && *from->reference) {
-            if (column + columns(from->reference) + 2 > WIDTH)
-                fprintf(out, "\n%*s", width + 2, "");
-            fprintf(out, "(%s)", from->reference);
-        }
+        fputs(norms, out);
+        if (*reference && width + 2 + n + columns(reference) + 3 <= WIDTH)
+            fprintf(out, " (%s)", reference);
+        else if (*reference)
+            fprintf(out, "\n%*s(%s)", width + 2, "", reference);
         fputs("\n", out);
     }
 }

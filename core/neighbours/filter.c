@@ -3,6 +3,9 @@
 
 #include <math.h>
 
+/* Points further away than so many units are taken to be there: squares must stay numbers. */
+#define FAR 1e18
+
 /* -- Plain C ------------------------------------------------------------------------------------- */
 
 static unsigned plain_near_boxes(const struct box8 *b, const struct query *q, int dim)
@@ -31,7 +34,8 @@ static void plain_pack(struct packed_leaf *p, const struct boxes *t, const struc
                        uint32_t leaf)
 {
     size_t first = (size_t)leaf * BOXES_FAN, n = t->n - first < BOXES_FAN ? t->n - first : BOXES_FAN;
-    double tail[BOXES_FAN], x[BOXES_FAN], s[BOXES_FAN] = {0};
+    double tail[BOXES_FAN];
+    float s[BOXES_FAN] = {0};
 
     for (int a = 0; a < t->dim; a++) {
         const double *from = t->x[a] + first;
@@ -43,15 +47,15 @@ static void plain_pack(struct packed_leaf *p, const struct boxes *t, const struc
             from = tail;
         }
         for (size_t k = 0; k < BOXES_FAN; k++) {
-            x[k] = (from[k] - f->centre[a]) * f->inverse;
-        }
-        for (size_t k = 0; k < BOXES_FAN; k++) {
-            p->x[a][k] = (float)x[k];
-            s[k] += x[k] * x[k];
+            double x = (from[k] - f->centre[a]) * f->inverse;
+
+            x = x < FAR ? x : FAR;
+            p->x[a][k] = (float)(x > -FAR ? x : -FAR);
+            s[k] += p->x[a][k] * p->x[a][k];
         }
     }
     for (size_t k = 0; k < BOXES_FAN; k++) {
-        p->s[k] = k < n ? (float)s[k] : INFINITY;
+        p->s[k] = k < n ? s[k] : INFINITY;
         p->r2[k] = 0;
     }
     for (size_t k = 0; k < n && t->scale > 0; k++) {
@@ -185,7 +189,7 @@ AVX2 static void avx2_pack(struct packed_leaf *p, const struct boxes *t, const s
                            uint32_t leaf)
 {
     size_t first = (size_t)leaf * BOXES_FAN;
-    __m256 s = _mm256_setzero_ps(), r2 = s;
+    __m256 s = _mm256_setzero_ps(), r2 = s, far = _mm256_set1_ps((float)FAR);
 
     if (first + BOXES_FAN > t->n) {
         plain_pack(p, t, f, leaf);
@@ -194,6 +198,7 @@ AVX2 static void avx2_pack(struct packed_leaf *p, const struct boxes *t, const s
     for (int a = 0; a < t->dim; a++) {
         __m256 x = avx2_float(t->x[a] + first, f->centre[a], f->inverse);
 
+        x = _mm256_max_ps(_mm256_min_ps(x, far), _mm256_sub_ps(_mm256_setzero_ps(), far));
         _mm256_store_ps(p->x[a], x);
         s = _mm256_fmadd_ps(x, x, s);
     }
@@ -261,7 +266,6 @@ AVX2 static size_t avx2_near_leaves(const struct packed_box8 *boxes, size_t n,
     return dim == 2 ? avx2_leaves(boxes, n, t, 2, out) : avx2_leaves(boxes, n, t, 1, out);
 }
 
-/* A comparison with NaN, which points at absurd distances make, keeps the second operand. */
 AVX2_INLINE unsigned avx2_verdict(const struct packed_leaf *p, const struct lanes *t, int uniform,
                                   __m256 any, __m256 own)
 {

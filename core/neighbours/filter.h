@@ -57,4 +57,9 @@ struct filter {
 const struct filter *filter_best(void);
 const struct filter *filter_plain(void);
 
+/* group_list_make with a filter of the caller's choice. */
+int filter_make(struct group_list *list, const struct cloud *dst, const struct cloud *src,
+                bool symmetric, double skin, int threads, const struct filter *filter,
+                struct error *e);
+
 #endif

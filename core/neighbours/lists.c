@@ -16,8 +16,8 @@
 #endif
 
 #define LANES 8
-#define BUNDLE_MOST 8     /* groups in a bundle */
-#define BUNDLE_SPREAD 4.0 /* half the diagonal of a bundle's box, in units of its smallest reach */
+#define BUNDLE_MOST 16    /* groups in a bundle */
+#define BUNDLE_SPREAD 5.0 /* half the diagonal of a bundle's box, in units of its smallest reach */
 #define UNIFORM 1.004f    /* reaches of a group that differ less are taken as one */
 #define CHUNK 512         /* groups that a thread takes at a time */
 
@@ -576,11 +576,12 @@ static int check(const struct cloud *dst, const struct cloud *src, bool symmetri
                : boxes_check(src, "source", e);
 }
 
-int group_list_make(struct group_list *list, const struct cloud *dst, const struct cloud *src,
-                    bool symmetric, double skin, int threads, struct error *e)
+int filter_make(struct group_list *list, const struct cloud *dst, const struct cloud *src,
+                bool symmetric, double skin, int threads, const struct filter *filter,
+                struct error *e)
 {
     double factor = (1 + skin) * (1 + SLACK);
-    struct job j = {.dst = dst, .filter = filter_best(), .scale = dst->scale * factor};
+    struct job j = {.dst = dst, .filter = filter, .scale = dst->scale * factor};
     int status;
 
     if (check(dst, src, symmetric, skin, e) != 0 ||
@@ -604,6 +605,12 @@ int group_list_make(struct group_list *list, const struct cloud *dst, const stru
         list->n_group = 0;
     }
     return status;
+}
+
+int group_list_make(struct group_list *list, const struct cloud *dst, const struct cloud *src,
+                    bool symmetric, double skin, int threads, struct error *e)
+{
+    return filter_make(list, dst, src, symmetric, skin, threads, filter_best(), e);
 }
 
 void group_list_fini(struct group_list *list)

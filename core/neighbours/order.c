@@ -13,7 +13,7 @@
 #include <string.h>
 
 #define CELL_MOST 32 /* points of a cell that are sorted by x alone */
-#define CELL_AIM 10  /* points of a cell into which a full one is sorted */
+#define CELL_AIM 16  /* points of a cell into which a full one is sorted */
 #define DEPTH_MOST 64
 
 struct sorter {

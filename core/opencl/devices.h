@@ -1,4 +1,4 @@
-/* opencl/devices.h -- which OpenCL devices there are, numbered as `--device opencl:N` counts them. */
+/* opencl/devices.h -- which OpenCL devices there are, as `--device opencl:N` numbers them. */
 #ifndef OPENCL_DEVICES_H
 #define OPENCL_DEVICES_H
 
@@ -18,8 +18,8 @@ struct opencl_device {
 /* Was OpenCL built in? */
 bool opencl_is_built(void);
 
-/* All devices of all platforms, in the order of the installed platforms; the caller frees *out. None
- * is no error. */
+/* All devices of all platforms, in the order of the installed platforms; the caller frees *out.
+ * None is no error. */
 int opencl_devices(struct opencl_device **out, size_t *n, struct error *e);
 
 #endif

@@ -38,7 +38,7 @@ static int check_arrays(const struct plan *plan, const struct step *s, const cha
 }
 
 /* Columns of `array` for every declared property; access_mask: those that must exist there. */
-static int bind_columns(struct plan *plan, struct binding *b, size_t array, const sph_item *item,
+int bind_columns(struct plan *plan, struct binding *b, size_t array, const sph_item *item,
                         uint32_t access_mask, struct error *e)
 {
     struct particles *p = &plan->array[array].p;
@@ -134,6 +134,14 @@ static int bind_eos(struct plan *plan, const struct step *s, size_t array, struc
         return -1;
     /* The state and parameters that the inverse needs, too. */
     return plan->array[array].eos.item ? 0 : configure_eos(plan, &plan->array[array].eos, m, e);
+}
+
+static int bind_assignment(struct plan *plan, const struct step *s, size_t array, struct error *e)
+{
+    struct pass *p = new_pass(plan, s, array, e);
+    if (!p || assignment_bind(plan, p, s, array, e))
+        return -1;
+    return bind_columns(plan, &p->dst, array, p->use.item, DST_ANY, e);
 }
 
 static int bind_sources(struct plan *plan, struct pass *p, const struct step *s, struct error *e)
@@ -249,15 +257,23 @@ int bind_passes(struct plan *plan, struct error *e)
         for (size_t a = 0; a < plan->n_array; a++) {
             if (!listed(s->to, s->n_to, plan->array[a].p.name))
                 continue;
-            if (s->kind == KIND_EOS ? bind_eos(plan, s, a, e) : bind_function(plan, s, a, e))
+            int status = s->expression         ? bind_assignment(plan, s, a, e)
+                         : s->kind == KIND_EOS ? bind_eos(plan, s, a, e)
+                                               : bind_function(plan, s, a, e);
+            if (status)
                 return -1;
         }
     }
     if (plan->reach_scale <= 0.0)
         plan->reach_scale = 1.0;
-    for (size_t i = 0; i < plan->n_pass; i++)
+    for (size_t i = 0; i < plan->n_pass; i++) {
+        struct pass *p = &plan->pass[i];
+        p->space = calloc(2 * p->use.item->props.count + 1, sizeof *p->space);
+        if (!p->space)
+            return error_memory(e, "the plan", p->use.item->props.count * sizeof *p->space);
         if (bind_reductions(plan, i, e))
             return -1;
+    }
     return 0;
 }
 
@@ -266,8 +282,10 @@ void bind_free(struct plan *plan)
     for (size_t i = 0; i < plan->n_pass; i++) {
         struct pass *p = &plan->pass[i];
         use_fini(&p->use, plan->registry);
+        assignment_free(p->assignment);
         free(p->name);
         free(p->dst.column);
+        free(p->space);
         for (size_t k = 0; k < p->n_src; k++)
             free(p->src[k].column);
         free(p->src);

@@ -11,7 +11,13 @@ void recipe_free(struct plan *plan);
 int columns_begin(struct plan *plan, bool guarded, struct error *e);
 /* bind.c: steps to passes, one for each destination array. */
 int bind_passes(struct plan *plan, struct error *e);
+int bind_columns(struct plan *plan, struct binding *b, size_t array, const sph_item *item,
+                 uint32_t access_mask, struct error *e);
 void bind_free(struct plan *plan);
+/* assignment.c: an expression of the scene as a pass. */
+int assignment_bind(struct plan *plan, struct pass *pass, const struct step *s, size_t array,
+                    struct error *e);
+void assignment_free(struct assignment *a);
 /* columns.c: which columns are state, which need an initial value, the rates, the integrator's own. */
 int columns_finish(struct plan *plan, struct error *e);
 

@@ -32,6 +32,7 @@ struct step {
     const char **to, **from; /* not owned */
     size_t n_to, n_from;    /* 0: all */
     const char *operation, *of; /* what the scene says it is; checked; or NULL */
+    const char *expression; /* assigned to `of`; NULL: a function */
 };
 
 /* The columns of a pass in one array, in the item's declared order. */
@@ -55,6 +56,9 @@ struct pass {
     struct binding dst;
     struct binding *src;
     size_t n_src;
+    struct assignment *assignment; /* of an expression, or NULL */
+    bool serial;           /* one thread only */
+    sph_column *space;     /* room for the columns of a batch: destination's, then source's */
     /* Cost, filled in by the run. */
     double seconds;
     uint64_t sweeps, pairs;

@@ -127,13 +127,15 @@ static int recipe_edit(struct plan *plan, const struct scene_edit *edit, struct 
         step_delete(plan, index);
     if (edit->kind == EDIT_DELETE)
         return 0;
-    if (!edit->function)
+    if (!edit->function && !(edit->expression && edit->of))
         return document_fail(plan->scene->doc, edit->node, e,
-                             "an operation needs \"function\": the name of a registered function");
+                             "an operation needs \"function\", the name of a registered function, or "
+                             "\"of\" and \"expression\"");
     struct step *s = step_insert(plan, index, e);
     if (!s)
         return -1;
-    s->kind = strcmp(edit->function, "eos") == 0 ? KIND_EOS : KIND_FUNCTION;
+    bool eos = edit->function && strcmp(edit->function, "eos") == 0;
+    s->kind = eos ? KIND_EOS : KIND_FUNCTION;
     s->moment = moment;
     if (edit->at) {
         int k = moment_find(edit->at);
@@ -150,7 +152,8 @@ static int recipe_edit(struct plan *plan, const struct scene_edit *edit, struct 
     s->n_from = edit->n_from;
     s->operation = edit->operation;
     s->of = edit->of;
-    return plan_name(&s->name, e, "%s", edit->function);
+    s->expression = edit->function ? NULL : edit->expression;
+    return plan_name(&s->name, e, "%s", edit->function ? edit->function : edit->of);
 }
 
 int recipe_make(struct plan *plan, struct error *e)

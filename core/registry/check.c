@@ -1,5 +1,5 @@
-/* registry/check.c -- the checks of each kind (see check.h). Reads host's copies only, whose lists and
- * optional texts are there; names and pointers to code may still be NULL. */
+/* registry/check.c -- the checks of each kind (see check.h). Reads host's copies only, whose lists
+ * and optional texts are there; names and pointers to code may still be NULL. */
 #include "registry/check.h"
 
 #include <math.h>
@@ -65,8 +65,8 @@ static int check_reduction(const sph_reduction *r, uint32_t i, const sph_list *p
         return error_set(e, EXIT_REFUSED, "use of reduction \"%s\" is %u, which is unknown",
                          r->name, r->use);
     if (r->use == SPH_USE_TIME_STEP && r->op != SPH_REDUCE_MIN)
-        return error_set(e, EXIT_REFUSED, "reduction \"%s\" bounds the time step, but is no minimum",
-                         r->name);
+        return error_set(e, EXIT_REFUSED,
+                         "reduction \"%s\" bounds the time step, but is no minimum", r->name);
     if (r->use > SPH_USE_TIME_STEP && r->op != SPH_REDUCE_SUM)
         return error_set(e, EXIT_REFUSED, "reduction \"%s\" is an energy, but no sum", r->name);
     return 0;
@@ -193,8 +193,8 @@ static int check_steps(const sph_list *steps, struct error *e)
              strcmp(s[i].at, SPH_AT_FINISH) != 0))
             return error_set(e, EXIT_REFUSED, "at of steps[%u] is none of start, evaluate, finish",
                              i);
-        if (!check_is_text(s[i].kind) || (strcmp(s[i].kind, SPH_KIND_FUNCTION) != 0 &&
-                                          strcmp(s[i].kind, SPH_KIND_EOS) != 0))
+        if (!check_is_text(s[i].kind) ||
+            (strcmp(s[i].kind, SPH_KIND_FUNCTION) != 0 && strcmp(s[i].kind, SPH_KIND_EOS) != 0))
             return error_set(e, EXIT_REFUSED, "kind of steps[%u] is neither %s nor %s", i,
                              SPH_KIND_FUNCTION, SPH_KIND_EOS);
         if (strcmp(s[i].kind, SPH_KIND_FUNCTION) == 0 && !check_is_name(s[i].name))
@@ -245,9 +245,8 @@ int check_descriptor(enum kind kind, const void *descriptor, struct error *e)
                    ? -1
                    : check_kernel(descriptor, e);
     case KIND_SCHEME:
-        return check_item(((const sph_scheme *)descriptor)->item, e)
-                   ? -1
-                   : check_scheme(descriptor, e);
+        return check_item(((const sph_scheme *)descriptor)->item, e) ? -1
+                                                                     : check_scheme(descriptor, e);
     case KIND_EXACT:
         return check_item(((const sph_exact *)descriptor)->item, e) ? -1
                                                                     : check_exact(descriptor, e);

@@ -1,4 +1,5 @@
-/* registry/check.h -- does a descriptor contradict itself? One sentence naming the field if it does. */
+/* registry/check.h -- does a descriptor contradict itself? One sentence naming the field if it
+ * does. */
 #ifndef REGISTRY_CHECK_H
 #define REGISTRY_CHECK_H
 

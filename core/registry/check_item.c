@@ -1,5 +1,5 @@
-/* registry/check_item.c -- the checks that all kinds share: an item's name, dimensions, parameters and
- * properties. Reads host's copies only. */
+/* registry/check_item.c -- the checks that all kinds share: an item's name, dimensions, parameters
+ * and properties. Reads host's copies only. */
 #include "config.h"
 
 #include "registry/check.h"
@@ -69,7 +69,7 @@ static int check_texts(const char *unit, const char *doc, const char *what, cons
     return 0;
 }
 
-/* "exact|hllc": words, each once; their number, or 0. */
+/* "one|other": words, each once; their number, or 0. */
 static uint32_t count_choices(const char *choices)
 {
     uint32_t n = 0;
@@ -150,7 +150,8 @@ static int check_prop(const sph_prop *p, struct error *e)
         return error_set(e, EXIT_REFUSED,
                          "access of property \"%s\" is more than one of write, sum, max and min",
                          p->name);
-    if (isnan(p->start))
+    /* NaN says that a scene must give the value; a sum cannot start there. */
+    if (isnan(p->start) && (sets & (SPH_DST_SUM | SPH_DST_MAX | SPH_DST_MIN)))
         return error_set(e, EXIT_REFUSED, "start of property \"%s\" is not a number", p->name);
     return check_texts(p->unit, p->doc, "property", p->name, e);
 }

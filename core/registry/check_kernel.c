@@ -1,5 +1,5 @@
-/* registry/check_kernel.c -- checks a kernel: its knots and powers, and that it integrates to 1 in each
- * dimension that it claims. */
+/* registry/check_kernel.c -- checks a kernel: its knots and powers, and that it integrates to 1 in
+ * each dimension that it claims. */
 #include "registry/check.h"
 #include "registry/kernel_form.h"
 
@@ -68,8 +68,9 @@ int check_kernel(const sph_kernel *k, struct error *e)
         if (check_terms(k, dim, &largest, e) || kernel_form_make(&form, k, dim, e))
             return -1;
         if (largest != k->support)
-            return error_set(e, EXIT_REFUSED, "support is %g, but the largest knot of terms[%d] is "
-                                              "%g",
+            return error_set(e, EXIT_REFUSED,
+                             "support is %g, but the largest knot of terms[%d] is "
+                             "%g",
                              k->support, dim, largest);
     }
     return 0;

@@ -48,7 +48,7 @@ static int unknown(const sph_item *item, const char *name, struct error *e)
     return -1;
 }
 
-/* "exact|hllc" -> "exact, hllc" */
+/* "one|other" -> "one, other" */
 static const char *listed(char *out, size_t size, const char *choices)
 {
     size_t n = 0;
@@ -93,8 +93,8 @@ static int set_number(double *value, const sph_param *p, double number, struct e
         if (isinf(p->min))
             return error_set(e, EXIT_USAGE, "%s must be at most %g, not %g", p->name, p->max,
                              number);
-        return error_set(e, EXIT_USAGE, "%s must lie between %g and %g, not be %g", p->name,
-                         p->min, p->max, number);
+        return error_set(e, EXIT_USAGE, "%s must lie between %g and %g, not be %g", p->name, p->min,
+                         p->max, number);
     }
     *value = number;
     return 0;

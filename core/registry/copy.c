@@ -1,5 +1,5 @@
-/* registry/copy.c -- copies descriptors across the border of the ABI (see copy.h). All that comes from
- * a plugin is read with memcpy: its structs may be smaller than ours, and need not be aligned. */
+/* registry/copy.c -- copies descriptors across the border of the ABI (see copy.h). What
+ * comes from a plugin is read with memcpy: its structs may be smaller than ours, or not aligned. */
 #include "registry/copy.h"
 
 #include <stddef.h>

@@ -1,5 +1,6 @@
-/* registry/copy.h -- copies descriptors across the border of the ABI, grown to today's size: the host
- * then reads its own structs, whatever the age of the plugin. Checks sizes and lists, not meaning. */
+/* registry/copy.h -- copies descriptors across the border of the ABI, grown to today's size: the
+ * host then reads its own structs, whatever the age of the plugin. Checks sizes and lists, not
+ * meaning. */
 #ifndef REGISTRY_COPY_H
 #define REGISTRY_COPY_H
 

@@ -1,5 +1,5 @@
-/* registry/fpmode.h -- the floating point mode of this thread: rounding, flush to zero, traps. Loading
- * a library that was linked with -ffast-math changes it for the whole program. */
+/* registry/fpmode.h -- the floating point mode of this thread: rounding, flush to zero, traps.
+ * Loading a library that was linked with -ffast-math changes it for the whole program. */
 #ifndef REGISTRY_FPMODE_H
 #define REGISTRY_FPMODE_H
 

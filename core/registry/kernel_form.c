@@ -1,4 +1,4 @@
-/* registry/kernel_form.c -- compiles kernels (see kernel_form.h). Pure arithmetic on its arguments. */
+/* registry/kernel_form.c -- compiles kernels (see kernel_form.h). Arithmetic, no more. */
 #include "registry/kernel_form.h"
 
 #include <math.h>
@@ -106,7 +106,6 @@ double kernel_form_dw(const sph_kernel_form *f, double q)
     double sum = 0;
 
     for (uint32_t i = 0; i < f->n_pieces; i++)
-        sum +=
-            clamped(f->piece[i].knot, f->piece[i].dpower, f->piece[i].d, f->piece[i].dn_coef, q);
+        sum += clamped(f->piece[i].knot, f->piece[i].dpower, f->piece[i].d, f->piece[i].dn_coef, q);
     return f->norm * sum;
 }

@@ -1,5 +1,5 @@
-/* registry/kernel_form.h -- compiles a kernel's descriptor for one dimension into the form that loops
- * evaluate: its terms gathered by knot, with the derivative in the same form. */
+/* registry/kernel_form.h -- compiles a kernel's descriptor for one dimension into the form that
+ * loops evaluate: its terms gathered by knot, with the derivative in the same form. */
 #ifndef REGISTRY_KERNEL_FORM_H
 #define REGISTRY_KERNEL_FORM_H
 

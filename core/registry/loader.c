@@ -1,4 +1,4 @@
-/* registry/loader.c -- finds plugins and loads them (see loader.h). The only file that maps code into
+/* registry/loader.c -- finds plugins and loads them (see loader.h). The one file that maps code into
  * the program: what it loads has passed registry/preflight.h, and what it keeps registry_add. */
 #include "config.h"
 
@@ -28,7 +28,7 @@ static bool has_suffix(const char *name)
     return n > strlen(SUFFIX) && strcmp(name + n - strlen(SUFFIX), SUFFIX) == 0;
 }
 
-/* -- One file ------------------------------------------------------------------------------------ */
+/* -- One file -------- */
 
 static void close_module(void *handle)
 {
@@ -47,9 +47,9 @@ static int linker_failed(const char *path, struct error *e)
     return error_set(e, EXIT_REFUSED, "it cannot be linked: %s", why ? why : "no reason given");
 }
 
-/* Opens a module whose path is absolute, so that libltdl searches nothing. dlopen goes first: libltdl
- * says "file not found" whatever is wrong, and binds lazily, so that a missing symbol would end the
- * program at its first call. */
+/* Opens a module whose path is absolute, so that libltdl searches nothing. dlopen goes first:
+ * libltdl says "file not found" whatever is wrong, and binds lazily, so that a missing symbol would
+ * end the program at its first call. */
 static lt_dlhandle open_module(const char *path, struct error *e)
 {
     void *probe = dlopen(path, RTLD_NOW | RTLD_LOCAL);
@@ -88,8 +88,9 @@ static int load_module(struct registry *r, const char *path, struct error *e)
 
     if (fpmode_get() != mode) {
         fpmode_set(mode);
-        error_set(e, EXIT_REFUSED, "loading it changes the floating point mode of the program: "
-                                   "link it without -ffast-math");
+        error_set(e, EXIT_REFUSED,
+                  "loading it changes the floating point mode of the program: "
+                  "link it without -ffast-math");
         goto fail;
     }
     if (!handle)
@@ -139,7 +140,7 @@ static int load_file(struct registry *r, const char *file, struct error *e)
     return status;
 }
 
-/* -- By name ------------------------------------------------------------------------------------- */
+/* -- By name -------- */
 
 struct names {
     char **name;
@@ -187,7 +188,7 @@ static int names_of(const char *folder, struct names *names)
     return 0;
 }
 
-/* "no plugin "nho" in A, B (did you mean "noh"?)" */
+/* "no plugin "gsa" in A, B (did you mean "gas"?)" */
 static int not_found(const char *name, char *const *folders, size_t n, struct error *e)
 {
     struct names names = {NULL, 0};
@@ -262,7 +263,7 @@ int loader_load(struct registry *r, const char *name_or_path, struct error *e)
     return status;
 }
 
-/* -- All ----------------------------------------------------------------------------------------- */
+/* -- All -------- */
 
 static bool has(const struct names *names, size_t n, const char *name)
 {

@@ -5,17 +5,16 @@
 
 #include "registry/registry.h"
 
-/* Loads a plugin by path (has a slash, or ends in .so and exists) or by name. Names are looked for in
- * SPH_PLUGIN_PATH (colon-separated), the user's folder ($XDG_DATA_HOME/sph/plugins-0) and the
- * system's (SPH_PLUGINDIR, or relative to the program), each as NAME.so. "NAME.so" with no such file
- * here is taken as the name NAME. SPH_PLUGIN_PATH=:: switches all three off. A plugin that is loaded
- * already is not loaded twice.
- * Refused (EXIT_REFUSED) with one sentence naming the file: not found (with the folders searched and
- * the nearest name), not readable, not ELF, other machine, truncated, a file or folder that others
- * may write to, missing entry, missing symbol (the linker's own words), wrong magic, ABI major.minor
- * (both named), a struct too small or absurdly large, failing init, duplicate names (both files
- * named), contradictory descriptors (item and field named), a changed floating point mode. A refused
- * plugin leaves no entry behind. [main] */
+/* Loads a plugin by path (has a slash, or ends in .so and exists) or by name. Names are looked for
+ * in SPH_PLUGIN_PATH (colon-separated), the user's folder ($XDG_DATA_HOME/sph/plugins-0) and the
+ * system's (SPH_PLUGINDIR, or relative to the program), each as NAME.so. "NAME.so" with no such
+ * file here is taken as the name NAME. SPH_PLUGIN_PATH=:: switches all three off. A plugin that is
+ * loaded already is not loaded twice. Refused (EXIT_REFUSED) with one sentence naming the file: not
+ * found (with the folders searched and the nearest name), not readable, not ELF, other machine,
+ * truncated, a file or folder that others may write to, missing entry, missing symbol (the linker's
+ * own words), wrong magic, ABI major.minor (both named), a struct too small or absurdly large,
+ * failing init, duplicate names (both files named), contradictory descriptors (item and field
+ * named), a changed floating point mode. A refused plugin leaves no entry behind. [main] */
 int loader_load(struct registry *r, const char *name_or_path, struct error *e);
 
 /* The folders that are searched, in order. Caller frees with loader_folders_free. */
@@ -24,7 +23,7 @@ void loader_folders_free(char **folders, size_t n);
 
 /* Loads every plugin in the search folders, for `sph info`; those refused are reported to `refused`
  * (called with the sentence) and skipped. */
-int loader_load_all(struct registry *r, void (*refused)(const char *sentence, void *), void *context,
-                    struct error *e);
+int loader_load_all(struct registry *r, void (*refused)(const char *sentence, void *),
+                    void *context, struct error *e);
 
 #endif

@@ -1,5 +1,6 @@
-/* registry/preflight.c -- looks at a plugin's file before it is mapped: the dynamic linker trusts what
- * it maps, and a truncated file ends in SIGBUS. Reads the file and its folder's mode, nothing else. */
+/* registry/preflight.c -- looks at a plugin's file before it is mapped: the dynamic linker trusts
+ * what it maps, and a truncated file ends in SIGBUS. Reads the file and its folder's mode, nothing
+ * else. */
 #include "config.h"
 
 #include "registry/preflight.h"
@@ -83,9 +84,9 @@ static const char *machine_name(unsigned machine)
     static const struct {
         unsigned machine;
         const char *name;
-    } known[] = {{EM_386, "32-bit x86"}, {EM_X86_64, "x86-64"}, {EM_ARM, "32-bit ARM"},
+    } known[] = {{EM_386, "32-bit x86"}, {EM_X86_64, "x86-64"},  {EM_ARM, "32-bit ARM"},
                  {EM_AARCH64, "ARM 64"}, {EM_PPC64, "POWER 64"}, {EM_S390, "S/390"},
-                 {EM_RISCV, "RISC-V"},   {EM_MIPS, "MIPS"},     {EM_SPARCV9, "SPARC 64"}};
+                 {EM_RISCV, "RISC-V"},   {EM_MIPS, "MIPS"},      {EM_SPARCV9, "SPARC 64"}};
 
     for (size_t i = 0; i < sizeof(known) / sizeof(known[0]); i++)
         if (known[i].machine == machine)
@@ -111,7 +112,8 @@ static int check_header(const elf_header *h, struct error *e)
                              own.e_machine);
     }
     if (h->e_version != EV_CURRENT || h->e_ident[EI_VERSION] != EV_CURRENT)
-        return error_set(e, EXIT_REFUSED, "its ELF version is %u, not %d", h->e_version, EV_CURRENT);
+        return error_set(e, EXIT_REFUSED, "its ELF version is %u, not %d", h->e_version,
+                         EV_CURRENT);
     if (h->e_type != ET_DYN)
         return error_set(e, EXIT_REFUSED, "it is not a shared object (ELF type %u)", h->e_type);
     return 0;
@@ -124,13 +126,15 @@ static bool inside(uint64_t at, uint64_t n, uint64_t size)
 
 static int check_segment(const elf_segment *s, uint64_t size, uint64_t *end, struct error *e)
 {
-    if (s->p_type != PT_NULL && s->p_type != PT_GNU_STACK && !inside(s->p_offset, s->p_filesz, size))
-        return error_set(e, EXIT_REFUSED, "it is truncated: a segment ends at byte %llu, the file "
-                                          "at %llu",
+    if (s->p_type != PT_NULL && s->p_type != PT_GNU_STACK &&
+        !inside(s->p_offset, s->p_filesz, size))
+        return error_set(e, EXIT_REFUSED,
+                         "it is truncated: a segment ends at byte %llu, the file "
+                         "at %llu",
                          (unsigned long long)(s->p_offset + s->p_filesz), (unsigned long long)size);
     if (s->p_type != PT_LOAD)
         return 0;
-    /* What the dynamic linker takes for granted: segments rise, do not overlap, hold their bytes. */
+    /* What the dynamic linker takes for granted: they rise, do not overlap, hold their bytes. */
     if (s->p_memsz < s->p_filesz || s->p_vaddr < *end || s->p_vaddr > MAPPED_MAX ||
         s->p_memsz > MAPPED_MAX || (s->p_align & (s->p_align - 1)))
         return error_set(e, EXIT_REFUSED, "it is damaged: its segments contradict each other");
@@ -158,8 +162,9 @@ static int check_segments(int fd, const elf_header *h, uint64_t size, struct err
         dynamics += segment.p_type == PT_DYNAMIC;
     }
     if (loads == 0 || dynamics != 1)
-        return error_set(e, EXIT_REFUSED, "it is damaged: it has %u segments to load and %u dynamic "
-                                          "ones",
+        return error_set(e, EXIT_REFUSED,
+                         "it is damaged: it has %u segments to load and %u dynamic "
+                         "ones",
                          loads, dynamics);
     return 0;
 }
@@ -170,8 +175,9 @@ static int check_sections(const elf_header *h, uint64_t size, struct error *e)
     if (h->e_shoff == 0)
         return 0;
     if (!inside(h->e_shoff, (uint64_t)h->e_shnum * h->e_shentsize, size))
-        return error_set(e, EXIT_REFUSED, "it is truncated: its table of sections ends at byte "
-                                          "%llu, the file at %llu",
+        return error_set(e, EXIT_REFUSED,
+                         "it is truncated: its table of sections ends at byte "
+                         "%llu, the file at %llu",
                          (unsigned long long)h->e_shoff +
                              (unsigned long long)h->e_shnum * h->e_shentsize,
                          (unsigned long long)size);

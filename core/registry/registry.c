@@ -14,9 +14,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-
-const char *const kind_label[KIND_COUNT] = {"function", "equation of state", "boundary condition",
-                                            "kernel",   "scheme",            "exact solution"};
+const char *const kind_label[KIND_COUNT] = {
+    "function", "equation of state", "boundary condition", "kernel", "scheme", "exact solution"};
 const char *const kind_id[KIND_COUNT] = {SPH_KIND_FUNCTION, SPH_KIND_EOS,    SPH_KIND_BOUNDARY,
                                          SPH_KIND_KERNEL,   SPH_KIND_SCHEME, SPH_KIND_EXACT};
 
@@ -43,7 +42,7 @@ static void keep(struct registry *r, const char *sentence)
     pthread_mutex_unlock(&g->mutex);
 }
 
-/* -- The host's function table ----------------------------------------------------------------- */
+/* -- The host's function table -------- */
 
 static sph_status host_fail(const sph_host *host, sph_status status, const char *message)
 {
@@ -179,7 +178,7 @@ static sph_status host_register_item(const sph_host *host, const char *kind, con
     return SPH_E_INVALID;
 }
 
-/* -- Life ---------------------------------------------------------------------------------------- */
+/* -- Life -------- */
 
 int registry_init(struct registry *r, struct error *e)
 {
@@ -244,7 +243,7 @@ void registry_fini(struct registry *r)
     memset(r, 0, sizeof(*r));
 }
 
-/* -- Adding a plugin ----------------------------------------------------------------------------- */
+/* -- Adding a plugin -------- */
 
 /* Magic and version stand where they always will; only then does the size mean anything. */
 static int check_border(const sph_plugin *in, struct error *e)
@@ -270,8 +269,8 @@ static int check_border(const sph_plugin *in, struct error *e)
 static int copy_plugin(sph_plugin *out, const sph_plugin *in, struct error *e)
 {
     if (check_border(in, e) ||
-        copy_struct(out, sizeof(*out), in,
-                    offsetof(sph_plugin, fini) + sizeof(out->fini), "plugin's descriptor", e))
+        copy_struct(out, sizeof(*out), in, offsetof(sph_plugin, fini) + sizeof(out->fini),
+                    "plugin's descriptor", e))
         return -1;
     if (!check_is_name(out->name))
         return error_set(e, EXIT_REFUSED, "name of the plugin is not a word of a-z, 0-9 and -");
@@ -371,7 +370,7 @@ fail:
     return error_prefix(e, "plugin %s", path);
 }
 
-/* -- Asking -------------------------------------------------------------------------------------- */
+/* -- Asking -------- */
 
 const struct entry *registry_find(const struct registry *r, enum kind kind, const char *name)
 {

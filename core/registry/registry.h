@@ -8,7 +8,15 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-enum kind { KIND_FUNCTION, KIND_EOS, KIND_BOUNDARY, KIND_KERNEL, KIND_SCHEME, KIND_EXACT, KIND_COUNT };
+enum kind {
+    KIND_FUNCTION,
+    KIND_EOS,
+    KIND_BOUNDARY,
+    KIND_KERNEL,
+    KIND_SCHEME,
+    KIND_EXACT,
+    KIND_COUNT
+};
 
 /* "function", "equation of state", ... and the SPH_KIND_... id. */
 extern const char *const kind_label[KIND_COUNT];
@@ -29,7 +37,7 @@ struct entry {
 struct plugin {
     char *path, *name, *version, *license, *doc; /* copies */
     uint32_t abi_major, abi_minor;
-    void *handle;         /* of the loader; NULL: not from a file */
+    void *handle; /* of the loader; NULL: not from a file */
     void (*close)(void *handle);
     const sph_plugin *descriptor; /* the host's own copy, grown as above */
 };
@@ -41,9 +49,9 @@ struct registry {
     struct entry *entry;
     size_t n_entry;
     sph_host host;
-    int log_level;        /* messages of plugins above it are dropped; others go to stderr */
-    struct error last;    /* the sentence of the last host->fail, per thread-safe lock inside */
-    void *lock;           /* private */
+    int log_level;     /* messages of plugins above it are dropped; others go to stderr */
+    struct error last; /* the sentence of the last host->fail, per thread-safe lock inside */
+    void *lock;        /* private */
 };
 
 int registry_init(struct registry *r, struct error *e);
@@ -105,7 +113,8 @@ int config_init(struct sph_config *c, const sph_item *item, struct error *e);
 void config_fini(struct sph_config *c);
 /* Sets one by number or by word (exactly one of number/word is used: word if not NULL). Fails with
  * "X must lie between ..", "X is one of a, b", without naming the place: the caller adds that. */
-int config_set(struct sph_config *c, const char *name, double number, const char *word, struct error *e);
+int config_set(struct sph_config *c, const char *name, double number, const char *word,
+               struct error *e);
 /* Fails if a mandatory parameter is still unset. */
 int config_check(const struct sph_config *c, struct error *e);
 

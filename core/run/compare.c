@@ -1,35 +1,10 @@
 /* run/compare.c -- error norms against the exact solutions that the scene names. */
 #include "base/text.h"
+#include "run/region.h"
 #include "run/report.h"
-#include "scene/expression.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static double at(const struct column *column, uint32_t c, size_t i)
-{
-    return ((const double *)column->data)[c * column->plane + i];
-}
-
-/* inside[i]: particle i lies in the region `where` (NULL: everywhere). */
-static int select_region(const struct plan_array *a, const char *where, bool *inside, struct error *e)
-{
-    static const char *const name[] = {"x", "y", "z", "r"};
-    struct expression *x = NULL;
-    if (where && expression_new(&x, where, name, 4, e))
-        return -1;
-    for (size_t i = 0; i < a->p.n; i++) {
-        double v[4] = {0.0, 0.0, 0.0, 0.0};
-        for (int c = 0; c < a->p.dim; c++) {
-            v[c] = at(&a->p.column[a->position], (uint32_t)c, i);
-            v[3] += v[c] * v[c];
-        }
-        v[3] = sqrt(v[3]);
-        inside[i] = !x || expression_at(x, v) != 0.0;
-    }
-    expression_free(x);
-    return 0;
-}
 
 static void norms(const struct plan_array *a, const struct column *f, const sph_column *exact,
                   const bool *inside, struct summary_error *out)
@@ -39,12 +14,12 @@ static void norms(const struct plan_array *a, const struct column *f, const sph_
     for (size_t i = 0; i < a->p.n; i++) {
         if (!inside[i])
             continue;
-        double density = rho < 0 ? 1.0 : at(&a->p.column[rho], 0, i);
-        double v = rho < 0 ? 1.0 : at(&a->p.column[a->mass], 0, i) / density;
+        double density = rho < 0 ? 1.0 : region_value(&a->p.column[rho], 0, i);
+        double v = rho < 0 ? 1.0 : region_value(&a->p.column[a->mass], 0, i) / density;
         double d2 = 0.0, s2 = 0.0;
         for (uint32_t c = 0; c < f->ncomp; c++) {
             double star = ((const double *)exact->data)[c * exact->plane + i];
-            d2 += (at(f, c, i) - star) * (at(f, c, i) - star);
+            d2 += (region_value(f, c, i) - star) * (region_value(f, c, i) - star);
             s2 += star * star;
         }
         volume += v;
@@ -123,7 +98,7 @@ static int compare(const struct run *r, size_t index, struct summary_error **out
     bool *inside = calloc(a->p.n, sizeof *inside);
     int status = column && inside ? 0 : error_memory(e, "a comparison", a->p.n);
     if (!status)
-        status = exact_columns(a, use->item, column, e) || select_region(a, c->where, inside, e) ? -1 : 0;
+        status = exact_columns(a, use->item, column, e) || region_select(a, c->where, inside, e) ? -1 : 0;
     if (!status) {
         sph_batch b = {.size = sizeof b, .dim = (uint32_t)plan->dim, .real = SPH_F64, .lanes = SPH_LANES,
                        .count = a->p.n, .n_dst = a->p.n, .dst = column, .n_columns = count,
@@ -166,126 +141,4 @@ void report_errors_free(struct summary_error *errors, size_t n)
     for (size_t i = 0; i < n; i++)
         free((void *)(uintptr_t)errors[i].field);
     free(errors);
-}
-
-/* -- probes ------------------------------------------------------------------------------------- */
-
-/* "v.x" is a component, "v" of a vector its length, "rho" a scalar. */
-static double probed(const struct plan_array *a, const char *of, size_t i)
-{
-    char plain[64] = "";
-    size_t length = strcspn(of, ".");
-    if (length < sizeof plain)
-        memcpy(plain, of, length);
-    int f = particles_find(&a->p, plain);
-    if (f < 0)
-        return NAN;
-    const struct column *column = &a->p.column[f];
-    if (column->size != sizeof(double) || column->type == SPH_INT64)
-        return (double)((const int32_t *)column->data)[i];
-    if (of[length] == '.') {
-        uint32_t c = (uint32_t)(of[length + 1] - 'x');
-        return c < column->ncomp ? at(column, c, i) : NAN;
-    }
-    if (column->ncomp == 1)
-        return at(column, 0, i);
-    double s = 0.0;
-    for (uint32_t c = 0; c < column->ncomp; c++)
-        s += at(column, c, i) * at(column, c, i);
-    return sqrt(s);
-}
-
-static double radius(const struct plan_array *a, size_t i)
-{
-    double r2 = 0.0;
-    for (int c = 0; c < a->p.dim; c++)
-        r2 += at(&a->p.column[a->position], (uint32_t)c, i) * at(&a->p.column[a->position], (uint32_t)c, i);
-    return sqrt(r2);
-}
-
-/* From outside inwards: the radius at which the shells' means reach the level, between two shells' middles. */
-static double crossing(const struct plan_array *a, const struct scene_probe *p, const bool *inside, struct error *e)
-{
-    double far = 0.0;
-    for (size_t i = 0; i < a->p.n; i++)
-        far = inside[i] ? fmax(far, radius(a, i)) : far;
-    size_t n = (size_t)(far / p->shell) + 1;
-    if (n > 10000000) {
-        error_set(e, EXIT_RUN, "probe \"%s\": too many shells", p->name);
-        return NAN;
-    }
-    double *sum = calloc(2 * n, sizeof *sum), *count = sum ? sum + n : NULL, found = NAN;
-    if (!sum) {
-        error_memory(e, "shells", 2 * n * sizeof *sum);
-        return NAN;
-    }
-    for (size_t i = 0; i < a->p.n; i++) {
-        size_t k = (size_t)(radius(a, i) / p->shell);
-        if (!inside[i] || k >= n)
-            continue;
-        sum[k] += probed(a, p->of, i);
-        count[k] += 1.0;
-    }
-    double outer = NAN, outer_r = NAN;
-    for (size_t k = n; k-- > 0;) {
-        if (count[k] == 0.0)
-            continue;
-        double mean = sum[k] / count[k], middle = ((double)k + 0.5) * p->shell;
-        if (mean >= p->level) {
-            found = isnan(outer) ? middle
-                                 : middle + (outer_r - middle) * (mean - p->level) / (mean - outer);
-            break;
-        }
-        outer = mean;
-        outer_r = middle;
-    }
-    free(sum);
-    return found;
-}
-
-static double probe(const struct plan_array *a, const struct scene_probe *p, const bool *inside, struct error *e)
-{
-    if (p->kind == PROBE_CROSSING)
-        return crossing(a, p, inside, e);
-    double out = p->kind == PROBE_MIN ? INFINITY : p->kind == PROBE_MAX ? -INFINITY : 0.0;
-    double n = 0.0;
-    for (size_t i = 0; i < a->p.n; i++) {
-        if (!inside[i])
-            continue;
-        double value = probed(a, p->of, i);
-        out = p->kind == PROBE_MIN   ? fmin(out, value)
-              : p->kind == PROBE_MAX ? fmax(out, value)
-                                     : out + value;
-        n += 1.0;
-    }
-    return n == 0.0 ? NAN : p->kind == PROBE_MEAN ? out / n : out;
-}
-
-int report_probes(const struct run *r, struct summary_probe **out, size_t *n, struct error *e)
-{
-    const struct scene *s = r->plan->scene;
-    *n = 0;
-    *out = calloc(s->n_probe + 1, sizeof **out);
-    if (!*out)
-        return error_memory(e, "probes", s->n_probe * sizeof **out);
-    for (size_t i = 0; i < s->n_probe; i++) {
-        const struct scene_probe *p = &s->probe[i];
-        const struct plan_array *a = NULL;
-        for (size_t k = 0; k < r->plan->n_array; k++)
-            if (strcmp(r->plan->array[k].p.name, p->array) == 0)
-                a = &r->plan->array[k];
-        if (!a)
-            continue;
-        bool *inside = calloc(a->p.n + 1, sizeof *inside);
-        if (!inside)
-            return error_memory(e, "a probe", a->p.n);
-        if (select_region(a, p->where, inside, e)) {
-            free(inside);
-            return -1;
-        }
-        (*out)[*n] = (struct summary_probe){p->name, probe(a, p, inside, e), p->expected};
-        *n += 1;
-        free(inside);
-    }
-    return 0;
 }

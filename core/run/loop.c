@@ -23,6 +23,7 @@ struct loop {
     struct totals first, last;
     double energy_drift, momentum_drift[3], angular_drift[3];
     double begin, end, started;
+    double full;        /* the last step's dt before it was cut to end on time */
     uint64_t max_steps, snapshots, next_output;
     double next_log;
     bool momentum_free; /* nothing bounds the domain, so momentum is conserved */
@@ -121,6 +122,11 @@ static double target(const struct loop *l)
     return fmin(next, l->end);
 }
 
+/* From one step to the next dt grows by no more than GROWTH, and the first is a part of what the bound allows: the
+ * bound is an estimate from the state before the step, and at the start nothing has moved yet. */
+#define GROWTH 1.2
+#define FIRST 0.1
+
 /* Full steps until near the target, then the rest in one or two equal steps: never a sliver. */
 static int choose_dt(struct loop *l, double *dt, struct error *e)
 {
@@ -130,6 +136,9 @@ static int choose_dt(struct loop *l, double *dt, struct error *e)
     if (!(full < INFINITY) && full > 0.0)
         return error_set(e, EXIT_USAGE,
                          "no function of the scene bounds the time step: give \"dt\" or \"dt_max\" in \"time\"");
+    if (isnan(l->scene->time.dt))
+        full = r->step == 0 ? FIRST * full : fmin(full, GROWTH * l->full);
+    l->full = full;
     double left = target(l) - r->time;
     double tiny = 1e-12 * fmax(fabs(r->time), l->end - l->begin);
     if (!(full > tiny * 1e-3))

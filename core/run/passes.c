@@ -75,7 +75,8 @@ static int call(struct run *r, const struct pass *p, sph_range_fn f, const sph_b
 {
     sph_status worst = SPH_OK;
     const long n = (long)ranges->n;
-#pragma omp parallel for schedule(dynamic) num_threads(r->threads)
+    const int threads = p->serial ? 1 : r->threads;
+#pragma omp parallel for schedule(dynamic) num_threads(threads)
     for (long k = 0; k < n; k++) {
         sph_batch b = *batch;
         b.first = ranges->first[k];
@@ -136,12 +137,16 @@ static void batch_begin(const struct run *r, const struct pass *p, sph_batch *b,
                      .dt = r->dt,
                      .step = r->step,
                      .host = &r->plan->registry->host};
+    if (p->shape == SPH_PAIR) {
+        b->x_dst = particles_column(&a->p, a->position);
+        b->h_dst = particles_column(&a->p, a->smoothing);
+    }
 }
 
 static void batch_source(const struct run *r, const struct pass *p, size_t s, sph_batch *b, sph_column *src)
 {
     const struct plan *plan = r->plan;
-    const struct plan_array *to = &plan->array[p->dst.array], *from = &plan->array[p->src[s].array];
+    const struct plan_array *from = &plan->array[p->src[s].array];
     const struct group_list *list = &r->list[p->dst.array * plan->n_array + p->src[s].array];
     columns_of(r, p, &p->src[s], src);
     b->src = src;
@@ -149,9 +154,7 @@ static void batch_source(const struct run *r, const struct pass *p, size_t s, sp
     b->same = p->src[s].array == p->dst.array;
     b->begin = list->begin;
     b->list = list->source;
-    b->x_dst = particles_column(&to->p, to->position);
     b->x_src = particles_column(&from->p, from->position);
-    b->h_dst = particles_column(&to->p, to->smoothing);
     b->h_src = particles_column(&from->p, from->smoothing);
 }
 
@@ -183,8 +186,7 @@ static void mark_written(struct run *r, const struct pass *p)
 
 static int sweep(struct run *r, struct pass *p, const struct ranges *ranges, struct error *e)
 {
-    uint32_t n = p->use.item->props.count ? p->use.item->props.count : 1;
-    sph_column dst[n], src[n];
+    sph_column *dst = p->space, *src = p->space + p->use.item->props.count;
     sph_batch b;
     if (p->shape == SPH_PAIR && r->lists_suspect && run_lists(r, true, e))
         return -1;

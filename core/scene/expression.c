@@ -16,9 +16,9 @@ struct expression {
 
 /* For suggestions: muparser cannot list what it knows. */
 static const char *const function_names[] = {
-    "sin",  "cos",   "tan",   "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "asinh",
-    "acosh", "atanh", "log2", "log10", "log", "ln",   "exp",   "sqrt", "sign", "rint", "abs",
-    "min",  "max",   "sum",   "avg",  "pi"};
+    "sin",  "cos",   "tan",   "asin",  "acos", "atan",  "atan2", "sinh", "cosh",
+    "tanh", "asinh", "acosh", "atanh", "log2", "log10", "log",   "ln",   "exp",
+    "sqrt", "sign",  "rint",  "abs",   "min",  "max",   "sum",   "avg",  "pi"};
 #define N_FUNCTION (sizeof function_names / sizeof *function_names)
 
 static double both(double a, double b)
@@ -81,8 +81,8 @@ static int fail_parser(struct expression *x, const char *text, const char *const
     }
     if (at >= length)
         return error_set(e, EXIT_USAGE, "\"%s\": the expression ends too early", text);
-    return error_set(e, EXIT_USAGE, "\"%s\": column %zu: \"%.12s\" is unexpected here", text, at + 1,
-                     text + at);
+    return error_set(e, EXIT_USAGE, "\"%s\": column %zu: \"%.12s\" is unexpected here", text,
+                     at + 1, text + at);
 }
 
 /* What muparser would take and we do not: texts too long, and assignments. */
@@ -97,12 +97,13 @@ static int check_text(const char *text, struct error *e)
     for (size_t i = 0; i < n; i++) {
         unsigned char c = (unsigned char)text[i];
         if (c < 0x20 || c >= 0x7f)
-            return error_set(e, EXIT_USAGE, "\"%s\": column %zu: a character that no expression has",
+            return error_set(e, EXIT_USAGE,
+                             "\"%s\": column %zu: a character that no expression has",
                              c < 0x20 ? "..." : text, i + 1);
         bool part = i > 0 && strchr("=<>!", text[i - 1]);
         if (c == '=' && !part && text[i + 1] != '=')
-            return error_set(e, EXIT_USAGE,
-                             "\"%s\": column %zu: \"=\" assigns; \"==\" compares", text, i + 1);
+            return error_set(e, EXIT_USAGE, "\"%s\": column %zu: \"=\" assigns; \"==\" compares",
+                             text, i + 1);
         if (c == '"')
             return error_set(e, EXIT_USAGE, "column %zu: a quotation mark in an expression", i + 1);
     }

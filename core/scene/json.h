@@ -18,7 +18,8 @@ struct document {
     char *text;
     size_t length;
     cJSON *root;
-    char **set; /* the --set arguments applied, for messages about values that are not in the text */
+    char *
+        *set; /* the --set arguments applied, for messages about values that are not in the text */
     size_t n_set;
     struct place *place;
     size_t n_place, place_capacity;

@@ -84,8 +84,7 @@ int json_positive(const struct document *d, const cJSON *object, const char *key
     if (json_number(d, object, key, required, &value, e) < 0)
         return -1;
     if (value <= 0)
-        return document_fail(d, json_get(object, key), e,
-                             "%s is not a %s; give a positive number",
+        return document_fail(d, json_get(object, key), e, "%s is not a %s; give a positive number",
                              json_brief(json_get(object, key), brief), what);
     if (!isnan(value))
         *out = value;

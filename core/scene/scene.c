@@ -228,8 +228,9 @@ static int compile_sides(struct scene *s, const cJSON *node, struct error *e)
         if (compile_side(s, low, &side[0], e) < 0 || compile_side(s, high, &side[1], e) < 0)
             return -1;
         if ((side[0] == SIDE_PERIODIC) != (side[1] == SIDE_PERIODIC))
-            return document_fail(s->doc, axis, e,
-                                 "one side is periodic and its opposite is not; give \"periodic\" for both");
+            return document_fail(
+                s->doc, axis, e,
+                "one side is periodic and its opposite is not; give \"periodic\" for both");
     }
     return 0;
 }
@@ -248,7 +249,7 @@ static int compile_domain(struct scene *s, const cJSON *node, struct error *e)
         if (s->box.min[i] >= s->box.max[i])
             return document_fail(s->doc, node, e,
                                  "the domain is empty: along %c, min %.15g is not below max %.15g",
-                                 "xyz"[i], s->box.min[i], s->box.max[i]);
+                                 "xyz"[i], s -> box.min[i], s->box.max[i]);
     s->box.bounded = true;
     const cJSON *sides = json_get(node, "sides");
     return sides ? compile_sides(s, sides, e) : 0;
@@ -274,9 +275,10 @@ static int compile_material(struct scene *s, const cJSON *node, struct scene_mat
     }
     if (!cJSON_IsObject(m->eos_node)) {
         char brief[JSON_BRIEF];
-        return document_fail(s->doc, m->eos_node, e,
-                             "%s is not an equation of state; give its name, or an object with \"name\"",
-                             json_brief(m->eos_node, brief));
+        return document_fail(
+            s->doc, m->eos_node, e,
+            "%s is not an equation of state; give its name, or an object with \"name\"",
+            json_brief(m->eos_node, brief));
     }
     m->eos_params = document_rest(s->doc, m->eos_node, eos_keys, 1);
     if (!m->eos_params)
@@ -314,7 +316,8 @@ static int compile_boundaries(struct scene *s, const cJSON *node, struct error *
     cJSON_ArrayForEach(item, node)
     {
         if (!cJSON_IsObject(item))
-            return document_fail(s->doc, item, e, "a boundary condition is an object with \"name\"");
+            return document_fail(s->doc, item, e,
+                                 "a boundary condition is an object with \"name\"");
         if (json_string(s->doc, item, "name", true, &name, e) < 0)
             return -1;
     }
@@ -326,8 +329,9 @@ static int compile_limits(struct scene *s, const cJSON *node, struct error *e)
 {
     static const char *const keys[] = {"particles"};
     long long particles = (long long)FILL_LIMIT;
-    if (node && (json_keys(s->doc, node, keys, COUNT(keys), e) < 0 ||
-                 json_integer(s->doc, node, "particles", false, 1, 4000000000ll, &particles, e) < 0))
+    if (node &&
+        (json_keys(s->doc, node, keys, COUNT(keys), e) < 0 ||
+         json_integer(s->doc, node, "particles", false, 1, 4000000000ll, &particles, e) < 0))
         return -1;
     s->limit = (uint64_t)particles;
     return 0;
@@ -381,9 +385,10 @@ static int compile_head(struct scene *s, const cJSON *root, struct error *e)
 
 static int compile(struct scene *s, const cJSON *root, struct error *e)
 {
-    static const char *const keys[] = {
-        "title", "dimensions", "plugins", "units",  "domain",     "materials", "particles", "boundaries",
-        "scheme", "kernel",    "time",    "limits", "neighbours", "compare",   "probes",    "output"};
+    static const char *const keys[] = {"title",      "dimensions", "plugins",   "units",
+                                       "domain",     "materials",  "particles", "boundaries",
+                                       "scheme",     "kernel",     "time",      "limits",
+                                       "neighbours", "compare",    "probes",    "output"};
     if (!root->child)
         return document_fail(s->doc, root, e, "the scene is empty");
     if (json_keys(s->doc, root, keys, COUNT(keys), e) < 0 || compile_head(s, root, e) < 0 ||

@@ -42,26 +42,28 @@ struct scene_fill {
     const cJSON *node;
     enum fill_kind kind;
     enum lattice lattice;
-    struct shape *shape;      /* inside which particles are put; NULL: the domain */
-    double spacing;           /* lattice spacing: volume per particle is spacing^dim for all lattices;
+    struct shape *shape;    /* inside which particles are put; NULL: the domain */
+    double spacing;         /* lattice spacing: volume per particle is spacing^dim for all lattices;
                                * 0: not given. Fitted so that whole cells fill the shape's bounds */
-    uint64_t count;           /* about so many particles (exactly, for a glass); 0: not given */
-    double mass;              /* > 0: equal-mass fill: the spacing follows from "rho"; 0: not given */
-    uint64_t seed;            /* glass and jitter; default 1 */
-    double jitter;            /* in units of the spacing; default 0 */
-    uint64_t sweeps;          /* glass: at most so many sweeps of relaxation; default 1000 */
-    double noise;             /* glass: stop at this rms density noise; default 0.01 */
-    const char *file;         /* FILL_FILE: CSV with named columns, or HDF5/VTKHDF; relative to the
+    uint64_t count;         /* about so many particles (exactly, for a glass); 0: not given */
+    double mass;            /* > 0: equal-mass fill: the spacing follows from "rho"; 0: not given */
+    uint64_t seed;          /* glass and jitter; default 1 */
+    double jitter;          /* in units of the spacing; default 0 */
+    uint64_t sweeps;        /* glass: at most so many sweeps of relaxation; default 200 */
+    double noise;           /* glass: stop at this rms density noise; default 0.01 */
+    const char *file;       /* FILL_FILE: CSV with named columns, or HDF5/VTKHDF; relative to the
                                * scene's folder */
-    const char *file_array;   /* of a snapshot: this array only; NULL: all */
-    const cJSON *rename;      /* object: the file's name of a column -> ours; or NULL */
+    const char *file_array; /* of a snapshot: this array only; NULL: all */
+    const cJSON
+        *rename;     /* object: the file's name of a column -> ours, "-" to leave it out; or NULL */
+    double *reached; /* glass: the rms density noise reached, set by fill_array; NaN before */
 };
 
 struct scene_array {
     const char *name;
     const cJSON *node;
-    size_t material;          /* index, or SIZE_MAX: none */
-    struct scene_fill *fill;  /* one array may have several fills (left and right of a tube) */
+    size_t material;         /* index, or SIZE_MAX: none */
+    struct scene_fill *fill; /* one array may have several fills (left and right of a tube) */
     size_t n_fill;
     /* Fields of a fill override those of the array. n_field of the array; fill_field[k] of fill k. */
     struct scene_field *field;
@@ -70,7 +72,8 @@ struct scene_array {
     size_t *n_fill_field;
     struct scene_column *column;
     size_t n_column;
-    double h_factor;          /* smoothing length at the start: h_factor * spacing ("h_over_dx"), default 1.3 */
+    double
+        h_factor; /* smoothing length at the start: h_factor * spacing ("h_over_dx"), default 1.3 */
 };
 
 /* An edit of the scheme's recipe, or an operation of the user's own: the paper's SPHOperation. */
@@ -78,23 +81,23 @@ enum edit_kind { EDIT_INSERT_BEFORE, EDIT_INSERT_AFTER, EDIT_REPLACE, EDIT_DELET
 struct scene_edit {
     const cJSON *node;
     enum edit_kind kind;
-    const char *anchor;       /* name of the step it acts on; NULL for append */
-    const char *operation;    /* "assignment", "summation", "integration"; NULL: as the function is */
-    const char *function;     /* name of a function or "eos"; NULL for delete and with an expression */
-    const char *expression;   /* of the particle's own scalars, assigned to `of`; NULL: a function */
-    const char *of;           /* the property that it sets, sums or integrates; checked by the plan */
-    const char *at;           /* "start", "evaluate" (default), "finish" */
-    const char **to, **from;  /* arrays; NULL: all */
+    const char *anchor;    /* name of the step it acts on; NULL for append */
+    const char *operation; /* "assignment", "summation", "integration"; NULL: as the function is */
+    const char *function;  /* name of a function or "eos"; NULL for delete and with an expression */
+    const char *expression; /* of the particle's own scalars, assigned to `of`; NULL: a function */
+    const char *of;         /* the property that it sets, sums or integrates; checked by the plan */
+    const char *at;         /* "start", "evaluate" (default), "finish" */
+    const char **to, **from; /* arrays; NULL: all */
     size_t n_to, n_from;
-    const cJSON *params;      /* object: the members that are none of the above */
+    const cJSON *params; /* object: the members that are none of the above */
 };
 
 struct scene_compare {
     const cJSON *node;
     const char *array, *exact;
-    const cJSON *params;      /* of the exact solution: the object minus the known keys */
-    const char *where;        /* region, an expression of x, y, z, r; NULL: everywhere */
-    const char **fields;      /* NULL: all that the solution knows and the array has */
+    const cJSON *params; /* of the exact solution: the object minus the known keys */
+    const char *where;   /* region, an expression of x, y, z, r; NULL: everywhere */
+    const char **fields; /* NULL: all that the solution knows and the array has */
     size_t n_fields;
 };
 
@@ -104,52 +107,71 @@ struct scene_probe {
     const cJSON *node;
     const char *name, *array;
     enum probe_kind kind;
-    const char *of;           /* a property; component by "v.x" */
-    const char *where;        /* expression, or NULL */
-    double shell, level;      /* crossing: where the mean of shells (in r) of this width crosses the level, from outside */
-    double expected;          /* NaN: none */
+    const char *of;    /* a property; component by "v.x" */
+    const char *where; /* expression, or NULL */
+    double shell,
+        level; /* crossing: where the mean of shells (in r) of this width crosses the level, from outside */
+    double expected; /* NaN: none */
 };
 
 struct scene_memory; /* what the structures stand in: private to scene.c */
 
 struct scene {
-    struct document *doc;     /* not owned; outlives the scene */
+    struct document *doc; /* not owned; outlives the scene */
     struct scene_memory *memory;
-    const char *title;        /* "" if not given */
+    const char *title; /* "" if not given */
     int dim;
     const char **plugin;
     size_t n_plugin;
-    const char *units;        /* "none", "SI", "cgs" */
-    uint64_t limit;           /* particles that the scene may make: "limits": {"particles": ..} */
+    const char *units; /* "none", "SI", "cgs" */
+    uint64_t limit;    /* particles that the scene may make: "limits": {"particles": ..} */
     struct box box;
-    struct scene_material *material; size_t n_material;
-    struct scene_array *array; size_t n_array;
-    const cJSON *boundaries;  /* array or NULL; resolved by the plan */
+    struct scene_material *material;
+    size_t n_material;
+    struct scene_array *array;
+    size_t n_array;
+    const cJSON *boundaries; /* array or NULL; resolved by the plan */
     struct {
         const cJSON *node;
         const char *name;
-        const cJSON *params;  /* object: the members that are neither "name" nor "edit" */
-        struct scene_edit *edit; size_t n_edit;
+        const cJSON *params; /* object: the members that are neither "name" nor "edit" */
+        struct scene_edit *edit;
+        size_t n_edit;
     } scheme;
-    struct { const cJSON *node; const char *name; } kernel; /* name NULL: the scheme's */
+    struct {
+        const cJSON *node;
+        const char *name;
+    } kernel; /* name NULL: the scheme's */
     struct {
         const cJSON *node;
         const char *integrator; /* NULL: the scheme's */
         double begin, end;
-        double cfl;             /* NaN: the scheme's */
-        double dt;              /* fixed step; NaN: adaptive */
-        double dt_max;          /* INFINITY if not given */
-        uint64_t steps;         /* at most; UINT64_MAX */
+        double cfl;     /* NaN: the scheme's */
+        double dt;      /* fixed step; NaN: adaptive */
+        double dt_max;  /* INFINITY if not given */
+        uint64_t steps; /* at most; UINT64_MAX */
     } time;
-    struct { const cJSON *node; double skin; } neighbours; /* optional key "neighbours": {"skin": 0.1} */
-    struct scene_compare *compare; size_t n_compare;
-    struct scene_probe *probe; size_t n_probe;
     struct {
         const cJSON *node;
-        double every;           /* time between snapshots; INFINITY: only first and last */
-        uint64_t log_steps;     /* a row of log.csv every so many steps; default 1 */
-        double log_every;       /* or every so much time; INFINITY */
-        struct { bool wanted; const char *array, *of; double min, max; bool range; const char *map; double size; } picture;
+        double skin;
+    } neighbours; /* optional key "neighbours": {"skin": 0.1} */
+    struct scene_compare *compare;
+    size_t n_compare;
+    struct scene_probe *probe;
+    size_t n_probe;
+    struct {
+        const cJSON *node;
+        double every;       /* time between snapshots; INFINITY: only first and last */
+        uint64_t log_steps; /* a row of log.csv every so many steps; default 1 */
+        double log_every;   /* or every so much time; INFINITY */
+        struct {
+            bool wanted;
+            const char *array, *of;
+            double min, max;
+            bool range;
+            const char *map;
+            double size;
+        } picture;
     } output;
 };
 

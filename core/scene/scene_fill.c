@@ -29,7 +29,7 @@ static int compile_glass(struct scene *s, const cJSON *node, struct scene_fill *
 {
     static const char *const keys[] = {"sweeps", "noise"};
     const cJSON *glass = json_get(node, "glass");
-    long long sweeps = 1000;
+    long long sweeps = 200;
     f->kind = FILL_GLASS;
     f->noise = .01;
     if (json_keys(s->doc, glass, keys, COUNT(keys), e) < 0 ||
@@ -68,9 +68,9 @@ static int compile_size(struct scene *s, const cJSON *node, struct scene_fill *f
     int given = (json_get(node, "spacing") != NULL) + (json_get(node, "count") != NULL) +
                 (json_get(node, "mass") != NULL);
     if (given != 1)
-        return document_fail(s->doc, node, e,
-                             "%s; give one of \"spacing\", \"count\" and \"mass\"",
-                             given ? "the fill's size is given twice" : "the fill's size is missing");
+        return document_fail(s->doc, node, e, "%s; give one of \"spacing\", \"count\" and \"mass\"",
+                             given ? "the fill's size is given twice"
+                                   : "the fill's size is missing");
     if (json_positive(s->doc, node, "spacing", false, "spacing", &f->spacing, e) < 0 ||
         json_integer(s->doc, node, "count", false, 1, 1ll << 52, &count, e) < 0 ||
         json_positive(s->doc, node, "mass", false, "mass", &f->mass, e) < 0)
@@ -117,16 +117,21 @@ int scene_fill(struct scene *s, const cJSON *node, struct scene_fill *f, struct 
     static const char *const glass_keys[] = {"glass", "in",   "spacing", "count",
                                              "mass",  "seed", "fields"};
     static const char *const file_keys[] = {"file", "array", "rename", "spacing", "fields"};
-    static const char *const all_keys[] = {"lattice", "glass",  "file",   "in",
-                                           "spacing", "count",  "mass",   "jitter",
-                                           "seed",    "array",  "rename", "fields"};
+    static const char *const all_keys[] = {"lattice", "glass", "file",   "in",
+                                           "spacing", "count", "mass",   "jitter",
+                                           "seed",    "array", "rename", "fields"};
     f->node = node;
+    f->reached = scene_alloc(s, 1, sizeof *f->reached, e);
+    if (!f->reached)
+        return -1;
+    *f->reached = NAN;
     if (json_keys(s->doc, node, all_keys, COUNT(all_keys), e) < 0)
         return -1;
     int kinds = (json_get(node, "lattice") != NULL) + (json_get(node, "glass") != NULL) +
                 (json_get(node, "file") != NULL);
     if (kinds != 1)
-        return document_fail(s->doc, node, e, "a fill has one of \"lattice\", \"glass\" and \"file\"");
+        return document_fail(s->doc, node, e,
+                             "a fill has one of \"lattice\", \"glass\" and \"file\"");
     if (json_get(node, "file")) {
         if (json_keys(s->doc, node, file_keys, COUNT(file_keys), e) < 0)
             return -1;

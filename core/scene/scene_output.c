@@ -6,7 +6,8 @@
 
 int scene_time(struct scene *s, const cJSON *node, struct error *e)
 {
-    static const char *const keys[] = {"integrator", "begin", "end", "cfl", "dt", "dt_max", "steps"};
+    static const char *const keys[] = {"integrator", "begin",  "end",  "cfl",
+                                       "dt",         "dt_max", "steps"};
     long long steps = -1;
     s->time.node = node;
     s->time.cfl = s->time.dt = NAN;

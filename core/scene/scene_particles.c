@@ -95,8 +95,7 @@ static int compile_columns(struct scene *s, const cJSON *node, struct scene_arra
 }
 
 /* One fill, or an array of them. */
-static int compile_fills(struct scene *s, const cJSON *node, struct scene_array *a,
-                         struct error *e)
+static int compile_fills(struct scene *s, const cJSON *node, struct scene_array *a, struct error *e)
 {
     if (cJSON_IsArray(node) && !node->child)
         return document_fail(s->doc, node, e, "no fill: the array has no particles");
@@ -109,8 +108,8 @@ static int compile_fills(struct scene *s, const cJSON *node, struct scene_array 
     const cJSON *item = cJSON_IsArray(node) ? node->child : node;
     for (size_t k = 0; k < n; k++, item = item->next) {
         if (scene_fill(s, item, &a->fill[k], e) < 0 ||
-            compile_fields(s, json_get(item, "fields"), &a->fill_field[k], &a->n_fill_field[k],
-                           e) < 0)
+            compile_fields(s, json_get(item, "fields"), &a->fill_field[k], &a->n_fill_field[k], e) <
+                0)
             return -1;
         a->n_fill++;
     }
@@ -141,8 +140,7 @@ static int compile_material_of(struct scene *s, const cJSON *node, struct scene_
                            : "; \"materials\" defines none");
 }
 
-static int compile_array(struct scene *s, const cJSON *node, struct scene_array *a,
-                         struct error *e)
+static int compile_array(struct scene *s, const cJSON *node, struct scene_array *a, struct error *e)
 {
     static const char *const keys[] = {"material", "fill", "fields", "columns", "h_over_dx"};
     a->name = node->string;

@@ -3,9 +3,9 @@
 #include "scene/scene_private.h"
 #include <string.h>
 
-static const char *const edit_keys[] = {"insert", "delete", "replace",    "with", "operation",
-                                        "before", "after",  "function",   "of",   "at",
-                                        "to",     "from",   "expression", "params"};
+static const char *const edit_keys[] = {"insert", "delete", "replace",   "with", "operation",
+                                        "before", "after",  "function",  "of",   "at",
+                                        "to",     "from",   "expression"};
 
 /* The arrays that an operation reaches. */
 static int compile_arrays(struct scene *s, const cJSON *node, const char *key, const char ***out,

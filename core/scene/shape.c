@@ -40,8 +40,9 @@ static int compile_box(struct shape *s, const struct document *d, const cJSON *n
         return -1;
     for (int i = 0; i < s->dim; i++)
         if (s->a[i] >= s->b[i])
-            return document_fail(d, node, e, "the box is empty: along %c, min %.15g is not below max %.15g",
-                                 "xyz"[i], s->a[i], s->b[i]);
+            return document_fail(d, node, e,
+                                 "the box is empty: along %c, min %.15g is not below max %.15g",
+                                 "xyz"[i], s -> a[i], s -> b[i]);
     return 0;
 }
 
@@ -72,9 +73,8 @@ static int compile_cylinder(struct shape *s, const struct document *d, const cJS
 {
     static const char *const keys[] = {"center", "axis", "radius", "length"};
     if (s->dim != 3)
-        return document_fail_key(d, node, e,
-                                 "a cylinder needs 3 dimensions; in %d give a sphere or a box",
-                                 s->dim);
+        return document_fail_key(
+            d, node, e, "a cylinder needs 3 dimensions; in %d give a sphere or a box", s->dim);
     if (json_keys(d, node, keys, 4, e) < 0 ||
         json_vector(d, node, "center", true, s->dim, s->a, e) < 0 ||
         json_vector(d, node, "axis", true, s->dim, s->b, e) < 0 ||
@@ -141,8 +141,9 @@ int shape_compile(struct shape **out, const struct document *d, const cJSON *nod
                              json_brief(node, brief));
     const cJSON *child = node->child;
     if (!child || child->next)
-        return document_fail(d, node, e, "a shape has one key, not %d: %s", cJSON_GetArraySize(node),
-                             "box, sphere, cylinder, half-space, union, intersection or difference");
+        return document_fail(
+            d, node, e, "a shape has one key, not %d: %s", cJSON_GetArraySize(node),
+            "box, sphere, cylinder, half-space, union, intersection or difference");
     size_t kind = 0;
     while (kind < SHAPE_KINDS && strcmp(child->string, kind_names[kind]) != 0)
         kind++;
@@ -315,4 +316,9 @@ bool shape_bounds(const struct shape *s, double min[3], double max[3])
     for (int i = 0; i < s->dim; i++)
         finite = finite && isfinite(min[i]) && isfinite(max[i]);
     return finite;
+}
+
+bool shape_is_box(const struct shape *s)
+{
+    return s->kind == SHAPE_BOX;
 }

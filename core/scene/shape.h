@@ -22,4 +22,7 @@ bool shape_inside(const struct shape *s, const double x[3]);
  * domain). */
 bool shape_bounds(const struct shape *s, double min[3], double max[3]);
 
+/* Whether it is one box, so that everything within its bounds belongs to it. */
+bool shape_is_box(const struct shape *s);
+
 #endif

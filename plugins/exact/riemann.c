@@ -1,6 +1,7 @@
 /* riemann.c -- Riemann's problem of an ideal gas in x: two uniform states meet at x0 at time 0.
  * E. F. Toro, Riemann Solvers and Numerical Methods for Fluid Dynamics (2009), chapter 4,
- * doi:10.1007/b79761; equation numbers are his. Vacuum on a side, or made between them: section 4.6. */
+ * doi:10.1007/b79761; equation numbers are his. Vacuum on a side, or made between them:
+ * section 4.6. */
 #include "exact.h"
 
 #include <math.h>
@@ -38,7 +39,8 @@ struct fan {
     int vacuum;  /* no state is between them */
 };
 
-/* The jump of velocity over the wave of a side to pressure p, and its derivative: eqs. 4.6-4.7, 4.37. */
+/* The jump of velocity over the wave of a side to pressure p, and its derivative:
+ * eqs. 4.6-4.7, 4.37. */
 static double jump(const struct side *k, double gamma, double p, double *derivative)
 {
     if (p > k->p) {
@@ -138,8 +140,8 @@ static sph_status create(const sph_host *host, const sph_config *c, uint32_t dim
     f->l = side_of(host, c, "rho_l", "u_l", "p_l", f->gamma);
     f->r = side_of(host, c, "rho_r", "u_r", "p_r", f->gamma);
     /* Eq. 4.40: the gas parts faster than it can follow. */
-    f->vacuum = f->l.rho == 0 || f->r.rho == 0 ||
-                f->r.u - f->l.u >= 2 * (f->l.a + f->r.a) / (f->gamma - 1);
+    f->vacuum =
+        f->l.rho == 0 || f->r.rho == 0 || f->r.u - f->l.u >= 2 * (f->l.a + f->r.a) / (f->gamma - 1);
     if (!f->vacuum)
         status = solve(f);
     if (status != SPH_OK) {
@@ -166,8 +168,8 @@ static struct side inside_fan(const struct side *k, double gamma, double s)
                          k->p * pow(c, 2 * gamma / (gamma - 1)), 0};
 }
 
-/* Left of the contact (or of the vacuum, whose edge moves with `edge`) at speed s = (x - x0) / t. The
- * right is its mirror image. */
+/* Left of the contact (or of the vacuum, whose edge moves with `edge`) at speed s = (x - x0) / t.
+ * The right is its mirror image. */
 static struct side sample_left(const struct side *k, const struct fan *f, double p, double u,
                                double s)
 {
@@ -232,7 +234,7 @@ static sph_status run(const sph_batch *b)
 
     for (uint64_t i = b->first; i < b->first + b->count; i++) {
         const double distance = x[i] - f->x0;
-        const struct side s = b->time > 0 ? sample(f, distance / b->time)
+        const struct side s = b->time > 0    ? sample(f, distance / b->time)
                               : distance < 0 ? f->l
                                              : f->r;
         if (rho)

@@ -1,6 +1,6 @@
 /* bspline.c -- Schoenberg's B-splines M4, M5, M6 in q = r / h, as sums of clamped powers.
- * Norms: J. J. Monaghan, Rep. Prog. Phys. 68 (2005) 1703, doi:10.1088/0034-4885/68/8/R01, section 2;
- * D. J. Price, J. Comput. Phys. 231 (2012) 759, doi:10.1016/j.jcp.2010.12.011, eqs. 6-8. */
+ * Norms: J. J. Monaghan, Rep. Prog. Phys. 68 (2005) 1703, doi:10.1088/0034-4885/68/8/R01, section
+ * 2; D. J. Price, J. Comput. Phys. 231 (2012) 759, doi:10.1016/j.jcp.2010.12.011, eqs. 6-8. */
 #include "kernels.h"
 
 #define SOURCE "Price 2012, doi:10.1016/j.jcp.2010.12.011, eqs. 6-8"

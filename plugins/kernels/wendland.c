@@ -1,7 +1,7 @@
-/* wendland.c -- Wendland's functions C2, C4, C6 with support 2 h, as powers of t = 2 - q, q = r / h.
- * W. Dehnen & H. Aly, MNRAS 425 (2012) 1068, doi:10.1111/j.1365-2966.2012.21439.x, table 1, gives
- * w(s) and its norm C for support 1; with s = 1 - q/2 = t/2, W = C 2^-d h^-d w. The functions of one
- * dimension are not those of two and three. */
+/* wendland.c -- Wendland's functions C2, C4, C6 with support 2 h, as powers of t = 2 - q, q = r /
+ * h. W. Dehnen & H. Aly, MNRAS 425 (2012) 1068, doi:10.1111/j.1365-2966.2012.21439.x, table 1,
+ * gives w(s) and its norm C for support 1; with s = 1 - q/2 = t/2, W = C 2^-d h^-d w. The functions
+ * of one dimension are not those of two and three. */
 #include "kernels.h"
 
 #define SOURCE "Dehnen & Aly 2012, doi:10.1111/j.1365-2966.2012.21439.x, table 1"

@@ -53,7 +53,8 @@ typedef struct sph_batch {
     const uint32_t *list;
     uint32_t same;     /* 1: destination and source are the same array, so i == j is the self pair */
     uint32_t reserved;
-    /* Position and smoothing length, over which the list was made; NULL data for point functions. */
+    /* Position and smoothing length, over which the list was made: the destination's in `before` and
+     * `after` too, the sources' in the sweep alone; NULL data for point functions. */
     sph_column x_dst, x_src, h_dst, h_src;
     /* The declared properties, in declared order. src[k].data is NULL unless SPH_SRC_READ. */
     const sph_column *dst, *src;

@@ -73,7 +73,7 @@ static sph_status SPH_LOOP_NAME(SPH_ISA)(const sph_batch *b)
     const uint64_t end = b->first + b->count;
 
     for (uint64_t i = b->first; i < end; i += SPH_WIDTH) {
-        const uint64_t g = i / SPH_LANES;
+        const uint64_t sph_g = i / SPH_LANES;
         const int lanes = end - i < SPH_WIDTH ? (int)(end - i) : SPH_WIDTH;
         R x_i[DIM];
         for (int c = 0; c < DIM; c++)
@@ -86,8 +86,8 @@ static sph_status SPH_LOOP_NAME(SPH_ISA)(const sph_batch *b)
         SPH_LOOP_MIN(SPH_A_MIN)
         SPH_LOOP_MAX(SPH_A_MAX)
 
-        for (uint64_t k = b->begin[g]; k < b->begin[g + 1]; k++) {
-            const uint32_t j = b->list[k];
+        for (uint64_t sph_k = b->begin[sph_g]; sph_k < b->begin[sph_g + 1]; sph_k++) {
+            const uint32_t j = b->list[sph_k];
             R dx[DIM];
             R r2 = {0};
             for (int c = 0; c < DIM; c++) {

@@ -1,4 +1,5 @@
-/* other_major.c -- it was built for another major version of the ABI; that its init is never run, its abort() proves. */
+/* other_major.c -- it was built for another major version of the ABI; that its init is never run,
+ * its abort() proves. */
 #include <sph/plugin.h>
 
 #include <stdlib.h>
@@ -11,7 +12,16 @@ static sph_status init(const sph_host *host)
 
 SPH_EXPORT const sph_plugin *sph_plugin_entry(void)
 {
-    static const sph_plugin plugin = {(uint32_t)sizeof(sph_plugin), SPH_PLUGIN_MAGIC, SPH_ABI_MAJOR + 1, 0, "broken", "1.0", "", "", init, NULL};
+    static const sph_plugin plugin = {(uint32_t)sizeof(sph_plugin),
+                                      SPH_PLUGIN_MAGIC,
+                                      SPH_ABI_MAJOR + 1,
+                                      0,
+                                      "broken",
+                                      "1.0",
+                                      "",
+                                      "",
+                                      init,
+                                      NULL};
 
     return &plugin;
 }

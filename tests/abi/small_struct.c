@@ -1,4 +1,5 @@
-/* small_struct.c -- its descriptor is smaller than the first version's; that its init is never run, its abort() proves. */
+/* small_struct.c -- its descriptor is smaller than the first version's; that its init is never run,
+ * its abort() proves. */
 #include <sph/plugin.h>
 
 #include <stdlib.h>
@@ -11,7 +12,8 @@ static sph_status init(const sph_host *host)
 
 SPH_EXPORT const sph_plugin *sph_plugin_entry(void)
 {
-    static const sph_plugin plugin = {16, SPH_PLUGIN_MAGIC, SPH_ABI_MAJOR, SPH_ABI_MINOR, "broken", "1.0", "", "", init, NULL};
+    static const sph_plugin plugin = {
+        16, SPH_PLUGIN_MAGIC, SPH_ABI_MAJOR, SPH_ABI_MINOR, "broken", "1.0", "", "", init, NULL};
 
     return &plugin;
 }

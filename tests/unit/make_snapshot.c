@@ -3,7 +3,7 @@
 #include "config.h"
 
 #include "io/snapshot.h"
-#include <math.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -75,6 +75,7 @@ int main(int argc, char **argv)
         fputs("usage: make_snapshot FILE [DIM [PER_SIDE]]\n", stderr);
         return EXIT_USAGE;
     }
+    signal(SIGXFSZ, SIG_IGN);
     int result = fill(&array[0], &array[1], dim, n, &e);
     if (result == 0)
         result = snapshot_write(argv[1], array, 2, &meta, &e);

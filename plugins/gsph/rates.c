@@ -1,0 +1,113 @@
+/* rates.c -- accelerations and heating from Riemann problems between neighbours, and the time step that they
+ * allow. Energy: the sweep sums each pair's flux of total energy; what is left after the work on the
+ * particle's own motion heats it. */
+#include "gsph.h"
+#include <math.h>
+
+enum { M, RHO, P, CS, V, OMEGA, GRHO, GP, GV, FORCE, POWER, FASTEST, A, DU, U, DT };
+enum { RIEMANN, LIMITER, BETA };
+
+static const sph_param params[] = {
+    {"riemann", "", "Riemann solver", 1.0, 1.0, 0.0, "exact|hllc"},
+    {"limiter", "", "slope limiter; none: first order", 2.0, 1.0, 0.0, "none|minmod|van-leer"},
+    {"beta", "", "weight of the closing speed in the signal speed that bounds the time step", 1.0, 0.0, 10.0,
+     NULL},
+};
+
+static const sph_prop props[] = {
+    {"m", "kg", "mass", SPH_SCALAR, SPH_SRC_READ, NAN},
+    {"rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN},
+    {"p", "J/m^d", "pressure", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN},
+    {"cs", "m/s", "speed of sound", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN},
+    {"v", "m/s", "velocity", SPH_VECTOR, SPH_DST_READ | SPH_SRC_READ, 0.0},
+    {"omega", "", "grad-h correction", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN},
+    {"grad_rho", "kg/m^(d+1)", "gradient of the density", SPH_VECTOR, SPH_DST_READ | SPH_SRC_READ, NAN},
+    {"grad_p", "J/m^(d+1)", "gradient of the pressure", SPH_VECTOR, SPH_DST_READ | SPH_SRC_READ, NAN},
+    {"grad_v", "1/s", "gradient of the velocity", SPH_MATRIX, SPH_DST_READ | SPH_SRC_READ, NAN},
+    {"force", "m/s^2", "sum of the pairs' momentum fluxes", SPH_VECTOR, SPH_DST_SUM, 0.0},
+    {"power", "W/kg", "sum of the pairs' energy fluxes", SPH_SCALAR, SPH_DST_SUM, 0.0},
+    {"signal", "m/s", "largest signal speed", SPH_SCALAR, SPH_DST_MAX, 0.0},
+    {"a", "m/s^2", "acceleration", SPH_VECTOR, SPH_DST_UPDATE, 0.0},
+    {"du", "W/kg", "rate of the specific internal energy", SPH_SCALAR, SPH_DST_WRITE, 0.0},
+    {"u", "J/kg", "specific internal energy", SPH_SCALAR, SPH_DST_READ, NAN},
+    {"dt", "s", "time step that the particle allows, before cfl", SPH_SCALAR, SPH_DST_WRITE, 0.0},
+};
+
+/* The limited increment of a quantity from j to i, from its step over the pair and what one side's gradient
+ * gives for it: b is the step beyond, seen from that side. */
+#define GSPH_LIMIT(step, slope)                                                                    \
+    (limiter < 1.5 ? GSPH_MINMOD((step), (2.0 * (slope) - (step)))                                 \
+                   : GSPH_VAN_LEER((step), (2.0 * (slope) - (step))))
+#define GSPH_MINMOD(a, b)                                                                          \
+    sph_select((a) * (b) > sph_num(0.0), sph_select(sph_abs(a) < sph_abs(b), (a), (b)), sph_num(0.0))
+#define GSPH_VAN_LEER(a, b)                                                                        \
+    sph_select((a) * (b) > sph_num(0.0), 2.0 * (a) * (b) / ((a) + (b)), sph_num(0.0))
+
+#define SPH_LOOP sweep
+#define SPH_LOOP_I(S, V_, M_)                                                                      \
+    S(rho, RHO) S(p, P) S(cs, CS) V_(v, V) S(omega, OMEGA) V_(grho, GRHO) V_(gp, GP) M_(gv, GV)
+#define SPH_LOOP_J(S, V_, M_) S(m, M) SPH_LOOP_I(S, V_, M_)
+#define SPH_LOOP_SUM(S, V_, M_) V_(force, FORCE) S(power, POWER)
+#define SPH_LOOP_MAX(S) S(fastest, FASTEST)
+#define SPH_LOOP_PARAM(P_) P_(riemann, RIEMANN) P_(limiter, LIMITER) P_(beta, BETA)
+#define SPH_LOOP_REACH SPH_SYMMETRIC
+#define SPH_LOOP_BODY "rates.body.h"
+#include <sph/pair-loop.h>
+
+/* v here is the predicted velocity v + dt a (or its half, at mid-step), made with the acceleration of the last
+ * evaluation, which still stands in "a". With dt/2 (a_new - a_old) added it is the one that both
+ * integrators end up with, and the work a.v then takes from u just what v gains: the total energy is
+ * kept to second order or better. */
+static sph_status finish(const sph_batch *b)
+{
+    const double *h = b->h_dst.data;
+    const double *cs = gsph_plane(&b->dst[CS], 0), *power = gsph_plane(&b->dst[POWER], 0);
+    const double *fastest = gsph_plane(&b->dst[FASTEST], 0);
+    double *du = gsph_plane(&b->dst[DU], 0), *dt = gsph_plane(&b->dst[DT], 0);
+    for (uint64_t i = b->first; i < b->first + b->count; i++) {
+        double work = 0.0;
+        for (uint32_t c = 0; c < b->dim; c++) {
+            double *a = gsph_plane(&b->dst[A], c) + i;
+            double force = gsph_plane(&b->dst[FORCE], c)[i];
+            work += force * (gsph_plane(&b->dst[V], c)[i] + 0.5 * b->dt * (force - *a));
+            *a = force;
+        }
+        du[i] = power[i] - work;
+        dt[i] = h[i] / fmax(fastest[i], 2.0 * cs[i]);
+    }
+    return SPH_OK;
+}
+
+static const sph_rate rates[] = {
+    {"v", "a", SPH_KICK, 0},
+    {"u", "du", SPH_KICK, 0},
+};
+
+static const sph_reduction reductions[] = {
+    {"dt", "dt", SPH_REDUCE_MIN, SPH_USE_TIME_STEP},
+    {"internal", "u", SPH_REDUCE_SUM, SPH_USE_INTERNAL},
+    {"rho_max", "rho", SPH_REDUCE_MAX, SPH_USE_NONE},
+    {"u_min", "u", SPH_REDUCE_MIN, SPH_USE_NONE},
+};
+
+static const sph_item item = {
+    SIZE(sph_item),
+    SPH_ALL_DIMS,
+    "gsph-rates",
+    "acceleration and heating from Riemann problems between neighbours",
+    "Inutsuka 2002, doi:10.1006/jcph.2002.7053; README",
+    SPH_LIST(params),
+    SPH_LIST(props),
+};
+
+const sph_function gsph_rates = {
+    .size = SIZE(sph_function),
+    .shape = SPH_PAIR,
+    .item = &item,
+    .run = sweep,
+    .after = finish,
+    .reach = SPH_SYMMETRIC,
+    .reach_scale = 1.0,
+    .rates = SPH_LIST(rates),
+    .reductions = SPH_LIST(reductions),
+};

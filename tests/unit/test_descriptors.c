@@ -1,0 +1,366 @@
+/* test_descriptors.c -- descriptors that contradict themselves are refused with one sentence that
+ * names file, item and field; whatever their numbers are, none crashes. */
+#include "config.h"
+
+#include "mock.h"
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+struct slip {
+    enum kind kind;
+    const char *says;
+    uint32_t *number;
+    uint32_t value;
+    double *real;
+    double real_value;
+    const char **text;
+    const char *text_value;
+};
+#define NUMBER(place, n) .number = &(place), .value = (n)
+#define REAL(place, x) .real = &(place), .real_value = (x)
+#define TEXT(place, s) .text = &(place), .text_value = (s)
+
+static void each_is_refused(const struct slip *slips, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        const char *why;
+        mock_reset(slips[i].kind);
+        if (slips[i].number)
+            *slips[i].number = slips[i].value;
+        if (slips[i].real)
+            *slips[i].real = slips[i].real_value;
+        if (slips[i].text)
+            *slips[i].text = slips[i].text_value;
+        why = mock_refusal();
+        if (!why || !strstr(why, slips[i].says))
+            fail_msg("%s, not %s", why ? why : "accepted", slips[i].says);
+        assert_non_null(strstr(why, MOCK_FILE));
+        assert_non_null(strstr(why, kind_label[slips[i].kind]));
+        assert_null(strchr(why, '\n'));
+    }
+}
+#define ALL_REFUSED(slips) each_is_refused((slips), sizeof(slips) / sizeof((slips)[0]))
+
+static void faultless_ones_are_taken(void **state)
+{
+    (void)state;
+    mock_reset(KIND_COUNT);
+    const char *why = mock_refusal();
+    if (why)
+        fail_msg("%s", why);
+    assert_int_equal(mock.finished, 1);
+    mock.function.shape = SPH_POINT;
+    assert_null(mock_refusal());
+}
+
+static void items(void **state)
+{
+    static char long_name[100];
+    const struct slip slips[] = {
+        {KIND_EXACT, "name of the item is missing", TEXT(mock.item.name, NULL)},
+        {KIND_EXACT, "name of the item is missing", TEXT(mock.item.name, "")},
+        {KIND_EXACT, "name of the item is not a word", TEXT(mock.item.name, "Thing")},
+        {KIND_EXACT, "name of the item is not a word", TEXT(mock.item.name, "a b")},
+        {KIND_EXACT, "name of the item is not a word", TEXT(mock.item.name, "th\xc3\xbcng")},
+        {KIND_EXACT, "name of the item is not a word", TEXT(mock.item.name, long_name)},
+        {KIND_EXACT, "\"thing\": dims is 0", NUMBER(mock.item.dims, 0)},
+        {KIND_EXACT, "\"thing\": dims has unknown bits", NUMBER(mock.item.dims, 0x10)},
+        {KIND_EXACT, "\"thing\": dims has unknown bits", NUMBER(mock.item.dims, 1)},
+        {KIND_EXACT, "\"thing\": doc is missing", TEXT(mock.item.doc, NULL)},
+        {KIND_EXACT, "\"thing\": doc is missing", TEXT(mock.item.doc, "")},
+        {KIND_EXACT, "\"thing\": doc is missing", TEXT(mock.item.doc, "two\nlines")},
+        {KIND_EXACT, "\"thing\": doc is missing", TEXT(mock.item.doc, "bad \xff byte")},
+        {KIND_EXACT, "size of the item is 8 bytes", NUMBER(mock.item.size, 8)},
+        {KIND_EXACT, "absurd", NUMBER(mock.item.size, 0x10000001)},
+        {KIND_EXACT, "list of props says 3 elements, but its data is NULL",
+         TEXT(*(const char **)&mock.item.props.data, NULL)},
+        {KIND_EXACT, "list of props has a stride of 4", NUMBER(mock.item.props.stride, 4)},
+        {KIND_EXACT, "list of params says 4000000000", NUMBER(mock.item.params.count, 4000000000u)},
+    };
+
+    (void)state;
+    memset(long_name, 'a', sizeof(long_name) - 1);
+    ALL_REFUSED(slips);
+}
+
+static void properties(void **state)
+{
+    static const struct slip slips[] = {
+        {KIND_EXACT, "name of props[1] is not a word", TEXT(mock.prop[1].name, NULL)},
+        {KIND_EXACT, "name of props[1] is not a word", TEXT(mock.prop[1].name, "p*")},
+        {KIND_EXACT, "property \"rho\" is declared twice", TEXT(mock.prop[1].name, "rho")},
+        {KIND_EXACT, "type of property \"p\" is 0", NUMBER(mock.prop[1].type, 0)},
+        {KIND_EXACT, "type of property \"p\" is 7", NUMBER(mock.prop[1].type, 7)},
+        {KIND_EXACT, "access of property \"rho\" is none", NUMBER(mock.prop[0].access, 0)},
+        {KIND_EXACT, "access of property \"rho\" has unknown bits",
+         NUMBER(mock.prop[0].access, 65)},
+        {KIND_EXACT, "more than one of write, sum, max and min", NUMBER(mock.prop[0].access, 12)},
+        {KIND_EXACT, "start of property \"p\" is not a number", REAL(mock.prop[1].start, NAN)},
+        {KIND_EXACT, "unit of property \"p\" is not", TEXT(mock.prop[1].unit, "\n")},
+        {KIND_EXACT, "doc of property \"p\" is not", TEXT(mock.prop[1].doc, "\xc3")},
+        {KIND_EXACT, "read at the sources", NUMBER(mock.prop[0].access, SPH_SRC_READ)},
+        {KIND_EOS, "read at the sources", NUMBER(mock.prop[0].access, SPH_SRC_READ)},
+    };
+
+    (void)state;
+    ALL_REFUSED(slips);
+}
+
+static void parameters(void **state)
+{
+    static const struct slip slips[] = {
+        {KIND_EXACT, "name of parameter 0 is not a word", TEXT(mock.param[0].name, "")},
+        {KIND_EXACT, "parameter \"solver\" is declared twice", TEXT(mock.param[0].name, "solver")},
+        {KIND_EXACT, "default of parameter \"gamma\" is 11", REAL(mock.param[0].def, 11)},
+        {KIND_EXACT, "default of parameter \"gamma\" is 0", REAL(mock.param[0].def, 0)},
+        {KIND_EXACT, "default of parameter \"gamma\" is inf", REAL(mock.param[0].def, INFINITY)},
+        {KIND_EXACT, "range of parameter \"gamma\" is not a number", REAL(mock.param[0].min, NAN)},
+        {KIND_EXACT, "choices of parameter \"solver\"", TEXT(mock.param[1].choices, "")},
+        {KIND_EXACT, "choices of parameter \"solver\"", TEXT(mock.param[1].choices, "a||b")},
+        {KIND_EXACT, "choices of parameter \"solver\"", TEXT(mock.param[1].choices, "a|b|")},
+        {KIND_EXACT, "choices of parameter \"solver\"", TEXT(mock.param[1].choices, "a|b|a")},
+        {KIND_EXACT, "default of parameter \"solver\" is 2", REAL(mock.param[1].def, 2)},
+        {KIND_EXACT, "default of parameter \"solver\" is 0.5", REAL(mock.param[1].def, .5)},
+    };
+
+    (void)state;
+    ALL_REFUSED(slips);
+}
+
+static void functions(void **state)
+{
+    static const struct slip slips[] = {
+        {KIND_FUNCTION, "size of the descriptor is 40", NUMBER(mock.function.size, 40)},
+        {KIND_FUNCTION, "shape is 3", NUMBER(mock.function.shape, 3)},
+        {KIND_FUNCTION, "reach is 0", NUMBER(mock.function.reach, 0)},
+        {KIND_FUNCTION, "reach_scale is -1", REAL(mock.function.reach_scale, -1)},
+        {KIND_FUNCTION, "reach_scale is nan", REAL(mock.function.reach_scale, NAN)},
+        {KIND_FUNCTION, "reach_scale is 1e+06", REAL(mock.function.reach_scale, 1e6)},
+        {KIND_FUNCTION, "unfinished is set, but max_sweeps is 0",
+         NUMBER(mock.function.max_sweeps, 0)},
+        {KIND_FUNCTION, "max_sweeps is 4294967295", NUMBER(mock.function.max_sweeps, ~0u)},
+        {KIND_FUNCTION, "unfinished names no property", TEXT(mock.function.unfinished, NULL)},
+        {KIND_FUNCTION, "unfinished is \"u\", which is not", TEXT(mock.function.unfinished, "u")},
+        {KIND_FUNCTION, "unfinished is \"p\", which is not", TEXT(mock.function.unfinished, "p")},
+        {KIND_FUNCTION, "not declared as a written int32",
+         NUMBER(mock.prop[2].access, SPH_DST_READ)},
+        {KIND_FUNCTION, "rate of \"u\" is \"a\", which is not", TEXT(mock.rate[0].rate, "a")},
+        {KIND_FUNCTION, "rate of \"u\" is \"rho\", which is not", TEXT(mock.rate[0].rate, "rho")},
+        {KIND_FUNCTION, "\"p\" is its own rate", TEXT(mock.rate[0].property, "p")},
+        {KIND_FUNCTION, "rates[0] does not name", TEXT(mock.rate[0].property, NULL)},
+        {KIND_FUNCTION, "are of different types", TEXT(mock.rate[0].property, "again")},
+        {KIND_FUNCTION, "kind of the rate of \"u\" is 9", NUMBER(mock.rate[0].kind, 9)},
+        {KIND_FUNCTION, "name of reductions[0]", TEXT(mock.reduction[0].name, NULL)},
+        {KIND_FUNCTION, "is of \"T\", which is not declared",
+         TEXT(mock.reduction[0].property, "T")},
+        {KIND_FUNCTION, "names no property", TEXT(mock.reduction[0].property, NULL)},
+        {KIND_FUNCTION, "which is not a scalar", TEXT(mock.reduction[0].property, "again")},
+        {KIND_FUNCTION, "op of reduction \"least\" is 0", NUMBER(mock.reduction[0].op, 0)},
+        {KIND_FUNCTION, "use of reduction \"least\" is 4", NUMBER(mock.reduction[0].use, 4)},
+        {KIND_FUNCTION, "but is no minimum", NUMBER(mock.reduction[0].op, SPH_REDUCE_MAX)},
+        {KIND_FUNCTION, "but no sum", NUMBER(mock.reduction[0].use, SPH_USE_INTERNAL)},
+        {KIND_FUNCTION, "size of the life is 0", NUMBER(mock.life.size, 0)},
+    };
+
+    (void)state;
+    ALL_REFUSED(slips);
+}
+
+static void kernels(void **state)
+{
+    static const struct slip slips[] = {
+        {KIND_KERNEL, "integral in 1 dimensions is 2.4", REAL(mock.kernel.norm[1], .4)},
+        {KIND_KERNEL, "integral in 3 dimensions is 1.0000000",
+         REAL(mock.kernel.norm[3], .0795774716)},
+        {KIND_KERNEL, "norm[2] is nan", REAL(mock.kernel.norm[2], NAN)},
+        {KIND_KERNEL, "norm[2] is 0", REAL(mock.kernel.norm[2], 0)},
+        {KIND_KERNEL, "support is inf", REAL(mock.kernel.support, INFINITY)},
+        {KIND_KERNEL, "support is 3, but the largest knot", REAL(mock.kernel.support, 3)},
+        {KIND_KERNEL, "knot of terms[1][0] is 2, not within 0", REAL(mock.kernel.support, 1.5)},
+        {KIND_KERNEL, "knot of terms[1][1] is -1", REAL(mock.term[1].knot, -1)},
+        {KIND_KERNEL, "coef of terms[1][1] is not finite", REAL(mock.term[1].coef, NAN)},
+        {KIND_KERNEL, "power of terms[1][0] is 1", NUMBER(mock.term[0].power, 1)},
+        {KIND_KERNEL, "power of terms[1][0] is 4294967295", NUMBER(mock.term[0].power, ~0u)},
+        {KIND_KERNEL, "terms[2] is empty", NUMBER(mock.kernel.terms[2].count, 0)},
+        {KIND_KERNEL, "params: an item of this kind has none",
+         TEXT(*(const char **)&mock.kernel.item, (const char *)&mock.item)},
+        {KIND_KERNEL, "item is NULL", TEXT(*(const char **)&mock.kernel.item, NULL)},
+    };
+
+    (void)state;
+    ALL_REFUSED(slips);
+}
+
+static void recipes(void **state)
+{
+    static const struct slip slips[] = {
+        {KIND_SCHEME, "kernel is not a name", TEXT(mock.scheme.kernel, NULL)},
+        {KIND_SCHEME, "integrator is not a name", TEXT(mock.scheme.integrator, "K D K")},
+        {KIND_SCHEME, "cfl is 0", REAL(mock.scheme.cfl, 0)},
+        {KIND_SCHEME, "cfl is inf", REAL(mock.scheme.cfl, INFINITY)},
+        {KIND_SCHEME, "steps is empty", NUMBER(mock.scheme.steps.count, 0)},
+        {KIND_SCHEME, "at of steps[0]", TEXT(mock.step[0].at, "later")},
+        {KIND_SCHEME, "at of steps[0]", TEXT(mock.step[0].at, NULL)},
+        {KIND_SCHEME, "kind of steps[1]", TEXT(mock.step[1].kind, "sph.kernel/0")},
+        {KIND_SCHEME, "steps[0] names no function", TEXT(mock.step[0].name, NULL)},
+        {KIND_BOUNDARY, "steps is empty", NUMBER(mock.boundary.steps.count, 0)},
+        {KIND_BOUNDARY, "kind of steps[0]", TEXT(mock.step[0].kind, NULL)},
+        {KIND_EOS, "inverse_props: none is written", NUMBER(mock.inverse_prop[0].access, 1)},
+        {KIND_EOS, "inverse_props: none is written", NUMBER(mock.eos.inverse_props.count, 0)},
+        {KIND_EOS, "props: none is written", NUMBER(mock.item.props.count, 1)},
+        {KIND_EXACT, "props: none is written", NUMBER(mock.item.props.count, 0)},
+    };
+
+    (void)state;
+    ALL_REFUSED(slips);
+}
+
+static void expect(const char *says)
+{
+    const char *why = mock_refusal();
+
+    if (!why || !strstr(why, says) || !strstr(why, MOCK_FILE))
+        fail_msg("%s, not %s", why ? why : "accepted", says);
+}
+
+static void missing_code(void **state)
+{
+    (void)state;
+    mock_reset(KIND_FUNCTION);
+    mock.function.run = NULL;
+    expect("function \"thing\": run is NULL");
+    mock_reset(KIND_EOS);
+    mock.eos.run = NULL;
+    expect("equation of state \"thing\": run is NULL");
+    mock_reset(KIND_EOS);
+    mock.eos.inverse = NULL;
+    expect("inverse is NULL, but inverse_props are declared");
+    mock_reset(KIND_EXACT);
+    mock.exact.run = NULL;
+    expect("exact solution \"thing\": run is NULL");
+}
+
+static void plugins(void **state)
+{
+    (void)state;
+    mock_reset(KIND_COUNT);
+    mock.plugin.magic = 1;
+    expect("magic number 0x00000001");
+    mock_reset(KIND_COUNT);
+    mock.plugin.abi_major = 7;
+    expect("built for the plugin ABI 7.1, but this sph has 0.1");
+    mock_reset(KIND_COUNT);
+    mock.plugin.abi_minor = 0;
+    expect("built for the plugin ABI 0.0, but this sph has 0.1");
+    mock_reset(KIND_COUNT);
+    mock.plugin.size = 20;
+    expect("size of the plugin's descriptor is 20 bytes");
+    mock_reset(KIND_COUNT);
+    mock.plugin.name = "Mock";
+    expect("name of the plugin");
+    mock_reset(KIND_COUNT);
+    mock.plugin.version = NULL;
+    expect("version of the plugin");
+    mock_reset(KIND_COUNT);
+    mock.plugin.init = NULL;
+    expect("init of the plugin is NULL");
+    mock_reset(KIND_COUNT);
+    mock.twice = 1;
+    expect("function \"thing\" is registered twice");
+    mock_reset(KIND_EOS);
+    mock.kind_id = "sph.universe/0";
+    expect("its init failed: kind \"sph.universe/0\" is unknown to this sph");
+    mock.kind_id = "bad \xff";
+    expect("is unknown to this sph");
+}
+
+/* -- Mutations -------- */
+
+static uint32_t next_random(uint64_t *s)
+{
+    *s = *s * 6364136223846793005u + 1442695040888963407u;
+    return (uint32_t)(*s >> 33);
+}
+
+/* Any of the numbers of any descriptor, set to anything: taken, or refused with one sentence; no
+ * crash. A list's count may only fall or be absurd: behind its end lies what no host can know. */
+static void mutations_do_no_harm(void **state)
+{
+    static const uint32_t odd[] = {0, 1, 2, 3, 4, 7, 8, 63, 64, 1024, 65537, 0x7fffffff, ~0u};
+    static const double odd_real[] = {0, -1, 1, 1e-300, 1e300, NAN, INFINITY, -INFINITY, .5};
+    uint32_t *const numbers[] = {
+        &mock.prop[0].type,     &mock.prop[1].type,     &mock.prop[0].access,
+        &mock.prop[2].access,   &mock.item.size,        &mock.item.dims,
+        &mock.plain_item.dims,  &mock.life.size,        &mock.function.size,
+        &mock.function.shape,   &mock.function.reach,   &mock.function.max_sweeps,
+        &mock.eos.size,         &mock.kernel.size,      &mock.scheme.size,
+        &mock.exact.size,       &mock.boundary.size,    &mock.rate[0].kind,
+        &mock.reduction[0].op,  &mock.reduction[0].use, &mock.term[0].power,
+        &mock.term[1].power,    &mock.plugin.size,      &mock.plugin.magic,
+        &mock.plugin.abi_major, &mock.plugin.abi_minor};
+    double *const reals[] = {&mock.prop[1].start,  &mock.param[0].def,   &mock.param[0].min,
+                             &mock.param[0].max,   &mock.param[1].def,   &mock.function.reach_scale,
+                             &mock.kernel.support, &mock.kernel.norm[1], &mock.kernel.norm[3],
+                             &mock.term[0].coef,   &mock.term[0].knot,   &mock.term[1].knot,
+                             &mock.scheme.cfl};
+    sph_list *const lists[] = {&mock.item.props,       &mock.item.params,
+                               &mock.function.rates,   &mock.function.reductions,
+                               &mock.kernel.terms[2],  &mock.scheme.steps,
+                               &mock.eos.inverse_props};
+    uint64_t seed = 1;
+    int refused = 0;
+
+#define ANY(array) (array)[next_random(&seed) % (sizeof(array) / sizeof((array)[0]))]
+    (void)state;
+    for (int i = 0; i < 10000; i++) {
+        const uint32_t slips = 1 + next_random(&seed) % 3;
+        const char *why;
+        mock_reset(KIND_COUNT);
+        for (uint32_t k = 0; k < slips; k++) {
+            const uint32_t where = next_random(&seed) % 8;
+            sph_list *list = ANY(lists);
+            uint32_t *number = ANY(numbers);
+            double *real = ANY(reals);
+            if (where < 4)
+                *number = ANY(odd);
+            else if (where < 6)
+                *real = ANY(odd_real);
+            else if (where < 7)
+                list->count = next_random(&seed) % 2 ? 0 : 1025 + next_random(&seed);
+            else
+                list->stride =
+                    next_random(&seed) % 2 ? next_random(&seed) % 8 : 65537 + next_random(&seed);
+        }
+        why = mock_refusal();
+        if (!why)
+            continue;
+        refused++;
+        assert_true(strlen(why) > 20 && !strchr(why, '\n'));
+        assert_non_null(strstr(why, MOCK_FILE));
+    }
+    assert_true(refused > 5000);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(faultless_ones_are_taken),
+        cmocka_unit_test(items),
+        cmocka_unit_test(properties),
+        cmocka_unit_test(parameters),
+        cmocka_unit_test(functions),
+        cmocka_unit_test(kernels),
+        cmocka_unit_test(recipes),
+        cmocka_unit_test(missing_code),
+        cmocka_unit_test(plugins),
+        cmocka_unit_test(mutations_do_no_harm),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,748 @@
+/* tests/unit/test_neighbours.c -- lists against all pairs, for clouds of many kinds; threads; order. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "domain/sides.h"
+#include "neighbours/filter.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define GROUP 8
+
+static double random_unit(uint64_t *seed)
+{
+    *seed = *seed * 6364136223846793005ull + 1442695040888963407ull;
+    return (double)(*seed >> 11) / 9007199254740992.0;
+}
+
+/* -- Clouds -------------------------------------------------------------------------------------- */
+
+struct owned {
+    struct cloud c;
+    double *x[3], *h;
+};
+
+static struct owned cloud_new(int dim, size_t n)
+{
+    struct owned o = {.c = {.dim = dim, .n = n, .scale = 2}};
+
+    for (int a = 0; a < dim; a++) {
+        o.c.x[a] = o.x[a] = calloc(n + 1, sizeof(double)); /* not a byte after the last is read */
+        assert_non_null(o.x[a]);
+    }
+    o.c.h = o.h = calloc(n + 1, sizeof(double));
+    assert_non_null(o.h);
+    return o;
+}
+
+static void cloud_free(struct owned *o)
+{
+    for (int a = 0; a < 3; a++) {
+        free(o->x[a]);
+    }
+    free(o->h);
+}
+
+/* h at which a point of an even cloud in the unit box has about `count` neighbours. */
+static double even_h(int dim, size_t n, double count)
+{
+    static const double ball[4] = {0, 2, 3.14159265, 4.18879020};
+
+    return 0.5 * pow(count / (ball[dim] * (double)(n ? n : 1)), 1.0 / dim);
+}
+
+static struct owned cloud_even(int dim, size_t n, uint64_t seed)
+{
+    struct owned o = cloud_new(dim, n);
+
+    for (size_t i = 0; i < n; i++) {
+        for (int a = 0; a < dim; a++) {
+            o.x[a][i] = random_unit(&seed);
+        }
+        o.h[i] = even_h(dim, n, 20);
+    }
+    return o;
+}
+
+/* Dense balls in a thin gas; h by the place's density, `ratio` at most. */
+static struct owned cloud_clustered(int dim, size_t n, double ratio, uint64_t seed)
+{
+    struct owned o = cloud_even(dim, n, seed);
+    double thin = even_h(dim, n, 20);
+
+    for (size_t i = 0; i < n; i++) {
+        double size = i % 4 == 0 ? 1 : 1 / ratio * (1 + (double)(i % 7));
+
+        for (int a = 0; a < dim; a++) {
+            double centre = size < 1 ? 0.2 + 0.2 * (double)(i % 3) : 0;
+
+            o.x[a][i] = centre + size * o.x[a][i];
+        }
+        o.h[i] = thin * size * (0.8 + 0.4 * random_unit(&seed));
+    }
+    return o;
+}
+
+/* A dense core in a thin gas, smoothly: radii to the power p, h by the local density. */
+static struct owned cloud_core(int dim, size_t n, double p, uint64_t seed)
+{
+    struct owned o = cloud_even(dim, n, seed);
+
+    for (size_t i = 0; i < n; i++) {
+        double r = 1e-9;
+
+        for (int a = 0; a < dim; a++) {
+            r += (o.x[a][i] - 0.5) * (o.x[a][i] - 0.5);
+        }
+        r = sqrt(r);
+        for (int a = 0; a < dim; a++) {
+            o.x[a][i] = (o.x[a][i] - 0.5) * pow(r, p - 1);
+        }
+        o.h[i] *= pow(p * pow(r, dim * (p - 1)), 1.0 / dim);
+    }
+    return o;
+}
+
+static void cloud_sort(struct owned *o, double cell)
+{
+    size_t n = o->c.n;
+    uint32_t *order = malloc((n + 1) * sizeof *order);
+    double *old = malloc((n + 1) * sizeof *old);
+    struct error e;
+
+    assert_int_equal(cell_order(&o->c, NULL, cell, order, &e), 0);
+    for (int k = 0; k <= o->c.dim; k++) {
+        double *x = k < o->c.dim ? o->x[k] : o->h;
+
+        memcpy(old, x, n * sizeof *x);
+        for (size_t i = 0; i < n; i++) {
+            x[i] = old[order[i]];
+        }
+    }
+    free(order);
+    free(old);
+}
+
+/* -- All pairs ----------------------------------------------------------------------------------- */
+
+static double square(const struct cloud *d, size_t i, const struct cloud *s, size_t j)
+{
+    double sum = 0;
+
+    for (int a = 0; a < d->dim; a++) {
+        double x = d->x[a][i] - s->x[a][j];
+
+        sum += x * x;
+    }
+    return sum;
+}
+
+static double pair_reach(const struct cloud *d, size_t i, const struct cloud *s, size_t j,
+                         bool symmetric)
+{
+    double own = d->scale * d->h[i];
+
+    return symmetric ? fmax(own, s->scale * s->h[j]) : own;
+}
+
+/* The list of a group against all sources: ascending, all that is within reach and skin of a lane,
+ * nothing that is a thousandth beyond it. */
+static void check_group(const struct group_list *l, size_t g, const struct cloud *d,
+                        const struct cloud *s, bool symmetric, double skin)
+{
+    size_t q = l->begin[g], last = g * GROUP + GROUP < d->n ? g * GROUP + GROUP : d->n;
+
+    for (size_t k = q; k + 1 < l->begin[g + 1]; k++) {
+        assert_true(l->source[k] < l->source[k + 1]);
+    }
+    for (size_t j = 0; j < s->n; j++) {
+        bool needed = false, allowed = false;
+        bool listed = q < l->begin[g + 1] && l->source[q] == j;
+
+        for (size_t i = g * GROUP; i < last; i++) {
+            double reach = pair_reach(d, i, s, j, symmetric) * (1 + skin);
+            double r = sqrt(square(d, i, s, j));
+
+            needed = needed || r < reach;
+            /* Reaches of a group that differ by 0.4 % may be taken as one. */
+            allowed = allowed || r <= reach * 1.005;
+        }
+        if (needed != listed && (needed || !allowed)) {
+            fail_msg("group %zu, source %zu: %s", g, j, listed ? "listed" : "missing");
+        }
+        q += listed;
+    }
+    assert_int_equal(q, l->begin[g + 1]); /* no index beyond the sources */
+}
+
+static void check_with(const struct cloud *d, const struct cloud *s, const struct filter *filter)
+{
+    static const double skins[2] = {0, 0.1};
+    struct group_list l = {0};
+    struct error e;
+
+    for (int k = 0; k < 4; k++) {
+        bool symmetric = k / 2 > 0;
+
+        assert_int_equal(filter_make(&l, d, s, symmetric, skins[k % 2], 1, filter, &e), 0);
+        assert_int_equal(l.n_group, (d->n + GROUP - 1) / GROUP);
+        assert_int_equal(l.symmetric, symmetric);
+        assert_int_equal(l.begin[0], 0);
+        for (size_t g = 0; g < l.n_group; g++) {
+            check_group(&l, g, d, s, symmetric, skins[k % 2]);
+        }
+        assert_true(group_list_bytes(&l) >= 8 * (l.n_group + 1) + 4 * l.begin[l.n_group]);
+    }
+    group_list_fini(&l);
+}
+
+static void check(const struct cloud *d, const struct cloud *s)
+{
+    check_with(d, s, filter_best());
+    check_with(d, s, filter_plain());
+}
+
+/* -- Lists --------------------------------------------------------------------------------------- */
+
+static void few_points(void **state)
+{
+    static const size_t count[] = {1, 2, 7, 8, 9, 16, 63, 64, 65, 71, 100};
+
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++) {
+        for (size_t k = 0; k < sizeof count / sizeof count[0]; k++) {
+            struct owned o = cloud_even(dim, count[k], k + 1);
+
+            check(&o.c, &o.c);
+            cloud_free(&o);
+        }
+    }
+}
+
+static void even_clouds(void **state)
+{
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++) {
+        struct owned o = cloud_even(dim, 1501, 11);
+
+        check(&o.c, &o.c); /* as they come: the tree takes an order of its own */
+        cloud_sort(&o, 2 * o.h[0]);
+        check(&o.c, &o.c);
+        for (size_t i = 0; i < o.c.n; i++) {
+            o.h[i] *= 0.9 + 0.2 * o.x[0][i];
+        }
+        check(&o.c, &o.c);
+        cloud_free(&o);
+    }
+}
+
+static void clustered_clouds(void **state)
+{
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++) {
+        for (double ratio = 7; ratio <= 100; ratio += 93) {
+            struct owned o = cloud_clustered(dim, 1403, ratio, 5);
+
+            check(&o.c, &o.c);
+            cloud_sort(&o, even_h(dim, 1403, 20));
+            check(&o.c, &o.c);
+            cloud_free(&o);
+        }
+        struct owned o = cloud_core(dim, 1403, 2, 4);
+
+        cloud_sort(&o, 0.1);
+        check(&o.c, &o.c);
+        cloud_free(&o);
+    }
+}
+
+/* A few sources of a hundred times the reach among many small ones, and h = 0. */
+static void wild_reaches(void **state)
+{
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++) {
+        struct owned o = cloud_even(dim, 1100, 3);
+
+        cloud_sort(&o, 2 * o.h[0]);
+        for (size_t i = 0; i < o.c.n; i++) {
+            o.h[i] *= i % 100 == 7 ? 100 * o.h[i] : i % 13 == 5 ? 0 : 0.2;
+        }
+        check(&o.c, &o.c);
+        memset(o.h, 0, o.c.n * sizeof *o.h);
+        check(&o.c, &o.c);
+        cloud_free(&o);
+    }
+}
+
+static void two_clouds(void **state)
+{
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++) {
+        struct owned d = cloud_even(dim, 403, 21), s = cloud_clustered(dim, 1205, 10, 22);
+
+        d.c.scale = 3;
+        check(&d.c, &s.c);
+        check(&s.c, &d.c);
+        cloud_sort(&d, 0.1);
+        cloud_sort(&s, 0.1);
+        check(&d.c, &s.c);
+        check(&s.c, &d.c);
+        /* Apart: empty lists, but for the symmetric reach. */
+        for (size_t i = 0; i < s.c.n; i++) {
+            s.x[0][i] += 3;
+        }
+        check(&d.c, &s.c);
+        cloud_free(&d);
+        cloud_free(&s);
+    }
+}
+
+static void gather_needs_no_source_h(void **state)
+{
+    struct owned d = cloud_even(2, 300, 2), s = cloud_even(2, 900, 4);
+    struct group_list with = {0}, without = {0};
+    struct cloud bare = s.c;
+    struct error e;
+
+    (void)state;
+    bare.h = NULL;
+    assert_int_equal(group_list_make(&with, &d.c, &s.c, false, 0.1, 1, &e), 0);
+    assert_int_equal(group_list_make(&without, &d.c, &bare, false, 0.1, 1, &e), 0);
+    assert_int_equal(with.begin[with.n_group], without.begin[without.n_group]);
+    assert_true(with.begin[with.n_group] > 0);
+    assert_memory_equal(with.source, without.source, 4 * with.begin[with.n_group]);
+    assert_int_equal(group_list_make(&without, &d.c, &bare, true, 0.1, 1, &e), -1);
+    group_list_fini(&with);
+    group_list_fini(&without);
+    cloud_free(&d);
+    cloud_free(&s);
+}
+
+static void empty_clouds(void **state)
+{
+    struct owned some = cloud_even(2, 20, 1), none = cloud_new(2, 0);
+    struct group_list l = {0};
+    struct error e;
+
+    (void)state;
+    assert_int_equal(group_list_make(&l, &some.c, &some.c, true, 0, 2, &e), 0);
+    assert_true(l.begin[3] > 0);
+    assert_int_equal(group_list_make(&l, &some.c, &none.c, true, 0, 2, &e), 0);
+    assert_int_equal(l.n_group, 3);
+    for (size_t g = 0; g <= 3; g++) {
+        assert_int_equal(l.begin[g], 0);
+    }
+    assert_int_equal(group_list_make(&l, &none.c, &some.c, true, 0, 2, &e), 0);
+    assert_int_equal(l.n_group, 0);
+    assert_int_equal(l.begin[0], 0);
+    group_list_fini(&l);
+    cloud_free(&some);
+    cloud_free(&none);
+}
+
+static void coincident_points(void **state)
+{
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++) {
+        struct owned o = cloud_even(dim, 700, 8);
+
+        for (size_t i = 0; i < o.c.n; i++) {
+            for (int a = 0; a < dim; a++) {
+                o.x[a][i] = i % 3 ? 0.25 : o.x[a][i];
+            }
+        }
+        check(&o.c, &o.c);
+        cloud_sort(&o, 0.1);
+        check(&o.c, &o.c);
+        cloud_free(&o);
+    }
+}
+
+/* Particles that have flown away cost neither memory nor correctness; nor does a far origin. */
+static void outliers(void **state)
+{
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++) {
+        struct owned o = cloud_even(dim, 1201, 9);
+        struct error e;
+        struct group_list l = {0};
+
+        for (size_t i = 0; i < o.c.n; i += 100) {
+            o.x[dim - 1][i] = i % 200 ? 1e9 + (double)i : -1e12;
+            o.x[0][i + 1] = 1e9 + 1e-3 * (double)(i % 300);
+        }
+        o.x[0][700] = 1e100;
+        o.x[0][701] = -1e149;
+        check(&o.c, &o.c);
+        cloud_sort(&o, 0.1);
+        check(&o.c, &o.c);
+        assert_int_equal(group_list_make(&l, &o.c, &o.c, true, 0.1, 1, &e), 0);
+        assert_true(group_list_bytes(&l) < 1000000);
+        group_list_fini(&l);
+        for (size_t i = 0; i < o.c.n; i++) {
+            o.x[0][i] += 1e6;
+        }
+        check(&o.c, &o.c);
+        cloud_free(&o);
+    }
+}
+
+static void any_unit_of_length(void **state)
+{
+    (void)state;
+    for (double unit = 1e-30; unit < 1e31; unit *= 1e20) {
+        struct owned o = cloud_clustered(3, 900, 10, 6);
+
+        for (size_t i = 0; i < o.c.n; i++) {
+            for (int a = 0; a < 3; a++) {
+                o.x[a][i] *= unit;
+            }
+            o.h[i] *= unit;
+        }
+        cloud_sort(&o, 0.1 * unit);
+        check(&o.c, &o.c);
+        cloud_free(&o);
+    }
+}
+
+/* A reach that takes in the whole cloud. */
+static void all_pairs(void **state)
+{
+    struct owned o = cloud_even(3, 1003, 6);
+
+    (void)state;
+    for (size_t i = 0; i < o.c.n; i++) {
+        o.h[i] = i % 2 ? 1 : 10;
+    }
+    check(&o.c, &o.c);
+    cloud_free(&o);
+}
+
+/* With ghosts: the pairs of the periodic cloud, by the nearest images. */
+static void periodic_clouds(void **state)
+{
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++) {
+        struct owned o = cloud_even(dim, 500, 12);
+        struct box box = {.dim = dim, .bounded = true, .max = {1, 1, 1}};
+        struct particles p;
+        struct ghosts ghosts = {0};
+        struct group_list l = {0};
+        struct error e;
+        double reach = 2 * o.h[0];
+        size_t listed = 0, wanted = 0;
+
+        cloud_sort(&o, reach);
+        particles_init(&p, "gas", dim, &e);
+        particles_add(&p, "x", "", "", SPH_VECTOR, &e);
+        particles_add(&p, "h", "", "", SPH_SCALAR, &e);
+        particles_resize(&p, o.c.n, 0, &e);
+        memcpy(particles_real(&p, "h", 0), o.h, o.c.n * sizeof *o.h);
+        for (int a = 0; a < dim; a++) {
+            box.side[a][0] = box.side[a][1] = SIDE_PERIODIC;
+            memcpy(particles_real(&p, "x", (uint32_t)a), o.x[a], o.c.n * sizeof *o.h);
+        }
+        assert_int_equal(ghosts_make(&ghosts, &box, &p, 1.1 * reach, &e), 0);
+        struct cloud d = o.c, s = o.c;
+
+        s.n = p.n + p.n_ghost;
+        s.h = particles_real(&p, "h", 0);
+        for (int a = 0; a < dim; a++) {
+            s.x[a] = particles_real(&p, "x", (uint32_t)a);
+        }
+        check(&d, &s);
+        assert_int_equal(group_list_make(&l, &d, &s, true, 0.1, 1, &e), 0);
+        for (size_t i = 0; i < d.n; i++) {
+            for (size_t q = l.begin[i / GROUP]; q < l.begin[i / GROUP + 1]; q++) {
+                listed += square(&d, i, &s, l.source[q]) < reach * reach;
+            }
+            for (size_t j = 0; j < d.n; j++) {
+                double sum = 0;
+
+                for (int a = 0; a < dim; a++) {
+                    double x = d.x[a][i] - d.x[a][j];
+
+                    x -= floor(x + 0.5);
+                    sum += x * x;
+                }
+                wanted += sum < reach * reach;
+            }
+        }
+        assert_int_equal(listed, wanted);
+        assert_true(wanted > 5 * d.n);
+        group_list_fini(&l);
+        ghosts_fini(&ghosts);
+        particles_fini(&p);
+        cloud_free(&o);
+    }
+}
+
+static void same_lists(const struct group_list *a, const struct group_list *b)
+{
+    assert_int_equal(a->n_group, b->n_group);
+    assert_memory_equal(a->begin, b->begin, (a->n_group + 1) * sizeof *a->begin);
+    assert_memory_equal(a->source, b->source, a->begin[a->n_group] * sizeof *a->source);
+    assert_int_equal(a->candidates, b->candidates);
+}
+
+/* Many chunks; sorted, and in the tree's own order; a list that is used again. */
+static void threads_make_no_difference(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 4; k++) {
+        struct owned o = k % 2 ? cloud_clustered(2, 30011, 20, 3) : cloud_even(2, 30011, 3);
+        struct group_list one = {0}, more = {0};
+        struct error e;
+
+        if (k / 2) {
+            cloud_sort(&o, 4 * o.h[0]);
+        }
+        assert_int_equal(group_list_make(&one, &o.c, &o.c, true, 0.1, 1, &e), 0);
+        assert_true(one.begin[one.n_group] > 0);
+        for (int threads = 2; threads <= 4; threads++) {
+            assert_int_equal(group_list_make(&more, &o.c, &o.c, true, 0.1, threads, &e), 0);
+            same_lists(&one, &more);
+        }
+        assert_int_equal(group_list_make(&more, &o.c, &o.c, true, 0.1, 1, &e), 0);
+        same_lists(&one, &more);
+        for (size_t g = 0; g < one.n_group; g += 401) {
+            check_group(&one, g, &o.c, &o.c, true, 0.1);
+        }
+        group_list_fini(&one);
+        group_list_fini(&more);
+        cloud_free(&o);
+    }
+}
+
+/* The work of a search stays near the true pairs, whatever the ratio of h: it is no n^2. */
+static void work_is_bounded(void **state)
+{
+    (void)state;
+    for (int k = 0; k < 3; k++) {
+        struct owned o = cloud_core(3, 40000, k == 0 ? 1 : 1.5 * k, 3);
+        struct group_list l = {0};
+        struct error e;
+        uint64_t pairs;
+
+        cloud_sort(&o, 2 * even_h(3, 40000, 20));
+        assert_int_equal(group_list_make(&l, &o.c, &o.c, false, 0, 1, &e), 0);
+        pairs = GROUP * l.begin[l.n_group];
+        assert_true(l.candidates < 10 * pairs);
+        /* Unsorted, the groups are bad, but the search is still local. */
+        uint64_t seed = 5;
+
+        for (size_t i = o.c.n - 1; i > 0; i--) {
+            size_t j = (size_t)(random_unit(&seed) * (double)i);
+
+            for (int a = 0; a <= 3; a++) {
+                double *x = a < 3 ? o.x[a] : o.h, t = x[i];
+
+                x[i] = x[j];
+                x[j] = t;
+            }
+        }
+        assert_int_equal(group_list_make(&l, &o.c, &o.c, false, 0, 1, &e), 0);
+        pairs = GROUP * l.begin[l.n_group];
+        assert_true(l.candidates < 12 * pairs);
+        group_list_fini(&l);
+        cloud_free(&o);
+    }
+}
+
+static void refuses(void **state)
+{
+    static const double bad[] = {NAN, INFINITY, -INFINITY, 1e200};
+    struct owned o = cloud_even(2, 100, 1), other = cloud_even(3, 10, 1), good = cloud_even(2, 50, 2);
+    struct group_list l = {0};
+    struct error e;
+    uint32_t order[100];
+
+    (void)state;
+    for (size_t k = 0; k < sizeof bad / sizeof bad[0]; k++) {
+        double old = o.x[1][37];
+
+        o.x[1][37] = bad[k];
+        assert_int_equal(group_list_make(&l, &o.c, &o.c, true, 0.1, 1, &e), -1);
+        assert_non_null(strstr(e.text, "particle 37"));
+        assert_int_equal(e.exit_code, EXIT_RUN);
+        assert_int_equal(group_list_make(&l, &good.c, &o.c, true, 0.1, 1, &e), -1);
+        assert_non_null(strstr(e.text, "source particle 37"));
+        assert_int_equal(group_list_make(&l, &o.c, &good.c, true, 0.1, 1, &e), -1);
+        assert_non_null(strstr(e.text, "destination particle 37"));
+        assert_int_equal(cell_order(&o.c, NULL, 0.1, order, &e), -1);
+        assert_non_null(strstr(e.text, "particle 37"));
+        o.x[1][37] = old;
+        old = o.h[99];
+        o.h[99] = k == 2 ? -1e-9 : bad[k];
+        assert_int_equal(group_list_make(&l, &o.c, &o.c, true, 0.1, 1, &e), -1);
+        assert_non_null(strstr(e.text, "particle 99"));
+        o.h[99] = old;
+    }
+    assert_int_equal(group_list_make(&l, &o.c, &other.c, true, 0.1, 1, &e), -1);
+    assert_int_equal(group_list_make(&l, &o.c, &o.c, true, -0.1, 1, &e), -1);
+    assert_int_equal(group_list_make(&l, &o.c, &o.c, true, NAN, 1, &e), -1);
+    /* And still works. */
+    assert_int_equal(group_list_make(&l, &o.c, &o.c, true, 0.1, 1, &e), 0);
+    group_list_fini(&l);
+    cloud_free(&o);
+    cloud_free(&other);
+    cloud_free(&good);
+}
+
+/* -- Order --------------------------------------------------------------------------------------- */
+
+static void check_permutation(const uint32_t *order, size_t n)
+{
+    char *seen = calloc(n + 1, 1);
+
+    for (size_t i = 0; i < n; i++) {
+        assert_true(order[i] < n);
+        assert_false(seen[order[i]]);
+        seen[order[i]] = 1;
+    }
+    free(seen);
+}
+
+static void orders_by_cells(void **state)
+{
+    struct error e;
+
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++) {
+        /* Few enough a cell that none is divided. */
+        size_t n = 3000;
+        double cell = pow(8.0 / (double)n, 1.0 / dim);
+        struct owned o = cloud_even(dim, n, 77);
+        uint32_t *order = malloc(n * sizeof *order);
+
+        for (size_t i = 0; i < n; i++) {
+            o.x[0][i] -= 0.5; /* cells count from a multiple of the edge, not from zero */
+        }
+        assert_int_equal(cell_order(&o.c, NULL, cell, order, &e), 0);
+        check_permutation(order, n);
+        for (size_t i = 0; i + 1 < n; i++) {
+            double key[2] = {0, 0};
+
+            for (int k = 0; k < 2; k++) {
+                for (int a = dim - 1; a >= 0; a--) {
+                    key[k] = 10000 * key[k] + floor(o.x[a][order[i + (size_t)k]] / cell);
+                }
+            }
+            assert_true(key[0] <= key[1]);
+            if (!(key[0] < key[1])) {
+                assert_true(o.x[0][order[i]] <= o.x[0][order[i + 1]]);
+            }
+        }
+        free(order);
+        cloud_free(&o);
+    }
+}
+
+/* Equal positions by id; the same whatever order the points came in. */
+static void order_follows_the_id(void **state)
+{
+    struct owned o = cloud_clustered(2, 2000, 30, 5);
+    size_t n = o.c.n;
+    int64_t *id = malloc(n * sizeof *id), *first = malloc(n * sizeof *id);
+    uint32_t *order = malloc(n * sizeof *order);
+    struct error e;
+
+    (void)state;
+    for (size_t i = 0; i < n; i++) {
+        id[i] = (int64_t)i;
+        if (i % 5 == 0) {
+            o.x[0][i] = o.x[1][i] = 0.3;
+        }
+    }
+    for (int round = 0; round < 3; round++) {
+        uint64_t seed = (uint64_t)round;
+
+        assert_int_equal(cell_order(&o.c, id, 0.05, order, &e), 0);
+        check_permutation(order, n);
+        for (size_t i = 0; i < n; i++) {
+            if (round == 0) {
+                first[i] = id[order[i]];
+            } else {
+                assert_int_equal(id[order[i]], first[i]);
+            }
+        }
+        for (size_t i = n - 1; i > 0; i--) {
+            size_t j = (size_t)(random_unit(&seed) * (double)i);
+            int64_t k = id[i];
+
+            id[i] = id[j];
+            id[j] = k;
+            for (int a = 0; a < 2; a++) {
+                double t = o.x[a][i];
+
+                o.x[a][i] = o.x[a][j];
+                o.x[a][j] = t;
+            }
+        }
+    }
+    free(order);
+    free(id);
+    free(first);
+    cloud_free(&o);
+}
+
+/* Any edge, any cloud: outliers, coincident points, one cell or far too many. */
+static void orders_anything(void **state)
+{
+    static const double edge[] = {1e-300, 1e-12, 0.01, 1, 1e300, 0, -1, NAN};
+    struct error e;
+
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++) {
+        struct owned o = cloud_clustered(dim, 3000, 100, 2);
+        uint32_t *order = malloc(o.c.n * sizeof *order);
+
+        for (size_t i = 0; i < o.c.n; i++) {
+            if (i % 3 == 0) {
+                o.x[0][i] = 0.5;
+            }
+            if (i % 500 == 1) {
+                o.x[dim - 1][i] = pow(10, (double)(i / 20));
+            }
+        }
+        for (size_t k = 0; k < sizeof edge / sizeof edge[0]; k++) {
+            assert_int_equal(cell_order(&o.c, NULL, edge[k], order, &e), 0);
+            check_permutation(order, o.c.n);
+        }
+        o.c.n = 0;
+        assert_int_equal(cell_order(&o.c, NULL, 1, order, &e), 0);
+        free(order);
+        cloud_free(&o);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(few_points),
+        cmocka_unit_test(even_clouds),
+        cmocka_unit_test(clustered_clouds),
+        cmocka_unit_test(wild_reaches),
+        cmocka_unit_test(two_clouds),
+        cmocka_unit_test(gather_needs_no_source_h),
+        cmocka_unit_test(empty_clouds),
+        cmocka_unit_test(coincident_points),
+        cmocka_unit_test(outliers),
+        cmocka_unit_test(any_unit_of_length),
+        cmocka_unit_test(all_pairs),
+        cmocka_unit_test(periodic_clouds),
+        cmocka_unit_test(threads_make_no_difference),
+        cmocka_unit_test(work_is_bounded),
+        cmocka_unit_test(refuses),
+        cmocka_unit_test(orders_by_cells),
+        cmocka_unit_test(order_follows_the_id),
+        cmocka_unit_test(orders_anything),
+    };
+
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -7,7 +7,7 @@ status=0
 for file in $(find core sdk plugins tests examples -name '*.[ch]' -o -name '*.sh' -o -name '*.py' \
     -o -name '*.json' | sort); do
     name=$file
-    case $file in tests/unit/*.c) name=${file%.c} ;; esac
-    cat Makefile.am ./*/fragment.am | grep -qwF "$name" || { echo "in no fragment: $file"; status=1; }
+    case $file in tests/*.c) name=${file%.c} ;; esac
+    cat Makefile.am ./*/fragment.am | grep -qwF -e "$name" || { echo "in no fragment: $file"; status=1; }
 done
 exit $status

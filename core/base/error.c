@@ -1,4 +1,5 @@
-/* base/error.c -- makes the sentences that travel upwards. Touches nothing but the caller's struct. */
+/* base/error.c -- makes the sentences that travel upwards. Touches nothing but the caller's
+ * struct. */
 #include "base/error.h"
 
 #include <stdarg.h>
@@ -6,7 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Copies to a text of fixed size; what does not fit is cut before, not inside, a UTF-8 character. */
+/* Copies to a text of fixed size; what does not fit is cut before, not inside, a UTF-8
+ * character. */
 static void copy_cut(char *to, size_t size, const char *from)
 {
     size_t n = strlen(from);

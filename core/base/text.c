@@ -68,7 +68,8 @@ const char *text_nearest(const char *word, const char *const *known, size_t n)
     return nearest;
 }
 
-const char *text_suggest(char *out, size_t size, const char *word, const char *const *known, size_t n)
+const char *text_suggest(char *out, size_t size, const char *word, const char *const *known,
+                         size_t n)
 {
     static const char intro[] = "; known are: ", more[] = ", ...";
     const char *nearest = text_nearest(word, known, n);

@@ -10,7 +10,8 @@
 const char *text_nearest(const char *word, const char *const *known, size_t n);
 
 /* Writes " (did you mean \"X\"?)" or, if none is near, "; known are: a, b, c" to out. Returns out. */
-const char *text_suggest(char *out, size_t size, const char *word, const char *const *known, size_t n);
+const char *text_suggest(char *out, size_t size, const char *word, const char *const *known,
+                         size_t n);
 
 /* printf into fresh memory (free it); NULL when out of memory. */
 char *text_format(const char *format, ...) __attribute__((format(printf, 1, 2)));

@@ -21,7 +21,7 @@ static bool mirror(const struct box *box, int axis, int high)
     return box->bounded && box->side[axis][high] == SIDE_MIRROR;
 }
 
-/* -- Wrapping ------------------------------------------------------------------------------------ */
+/* -- Wrapping ---------------------------------------------------------------------------------- */
 
 static double wrap_periodic(double x, double min, double max)
 {
@@ -73,13 +73,33 @@ static bool turns(uint32_t type, int dim, uint32_t k, int axis)
     }
 }
 
+/* The position, or what an integrator has kept of it ("x.0"): points, not directions. */
+static bool is_position(const struct column *c)
+{
+    return c->name[0] == 'x' && (c->name[1] == '\0' || c->name[1] == '.');
+}
+
+/* Moves what an integrator has kept of the position as the position itself was moved. */
+static void move_kept(struct particles *p, size_t i, int axis, double from, double to, bool flipped)
+{
+    for (size_t k = 0; k < p->n_column; k++) {
+        const struct column *c = &p->column[k];
+
+        if (c->type == SPH_VECTOR && c->name[0] == 'x' && c->name[1] == '.') {
+            double *kept = (double *)c->data + (size_t)axis * c->plane + i;
+
+            *kept = flipped ? from + to - *kept : *kept + (to - from);
+        }
+    }
+}
+
 /* Turns what a mirror across `axis` turns, in every state column but the position. */
 static void turn_state(struct particles *p, size_t i, int axis)
 {
     for (size_t k = 0; k < p->n_column; k++) {
         const struct column *c = &p->column[k];
 
-        for (uint32_t q = 0; c->state && strcmp(c->name, "x") != 0 && q < c->ncomp; q++) {
+        for (uint32_t q = 0; c->state && !is_position(c) && q < c->ncomp; q++) {
             if (turns(c->type, p->dim, q, axis)) {
                 double *v = (double *)c->data + q * c->plane + i;
 
@@ -103,6 +123,7 @@ static bool wrap_axis(const struct box *box, struct particles *p, double *x, siz
     }
     x[i] = periodic(box, axis) ? wrap_periodic(old, box->min[axis], box->max[axis])
                                : wrap_mirror(box, axis, old, &flipped);
+    move_kept(p, i, axis, old, x[i], flipped);
     if (flipped) {
         turn_state(p, i, axis);
     }
@@ -133,7 +154,7 @@ size_t sides_wrap(const struct box *box, struct particles *p)
     return moved;
 }
 
-/* -- Ghosts -------------------------------------------------------------------------------------- */
+/* -- Ghosts ------------------------------------------------------------------------------------ */
 
 void ghosts_fini(struct ghosts *g)
 {
@@ -218,8 +239,7 @@ static int add_layer(struct ghosts *g, const struct box *box, struct particles *
     if (more == 0) {
         return 0;
     }
-    if (ghosts_reserve(g, g->n + more, e) != 0 ||
-        particles_resize(p, p->n, g->n + more, e) != 0) {
+    if (ghosts_reserve(g, g->n + more, e) != 0 || particles_resize(p, p->n, g->n + more, e) != 0) {
         return -1;
     }
     for (int a = 0; a < p->dim; a++) {

@@ -17,22 +17,27 @@ struct box {
 };
 
 struct ghosts {
-    uint32_t *parent;   /* [n_ghost]: real particle that ghost n + k copies */
-    uint8_t *image;     /* [n_ghost]: 2 bits an axis: 0 none, 1 across the low side, 2 across the high */
+    uint32_t *parent; /* [n_ghost]: real particle that ghost n + k copies */
+    uint8_t *image;   /* [n_ghost]: 2 bits an axis: it stands 1 below the low side, 2 above the
+                         * high side, 0 neither */
     size_t n, capacity;
 };
 
 void ghosts_fini(struct ghosts *g);
 
-/* Wraps positions across periodic sides and reflects those that crossed a mirror (velocity too:
- * every SPH_VECTOR `state` column but x). Returns the number moved. */
+/* Wraps positions across periodic sides (to min <= x < max) and reflects those that crossed a
+ * mirror, however far they went; a reflection turns vectors and tensors too, in every `state`
+ * column but x. Positions that are not finite stay as they are. Returns the number of particles
+ * moved. */
 size_t sides_wrap(const struct box *box, struct particles *p);
 
-/* Makes ghosts of every real particle within reach of a side: reach[i] is the distance up to which
- * particle i must be seen (its own support and that of its neighbours: see below), margin the
- * largest support of any particle of any array, both with skin. A particle gets a ghost across a
- * side if it is nearer to it than max(reach[i], margin). Appends to p (resizes) and fills x and h.
- * Fails when a periodic box is narrower than twice the margin: "... use a larger box". */
+/* Makes ghosts of every real particle that is nearer than `margin` to a side behind which its image
+ * stands: the largest support of any particle of any array, skin included, so that a pair within
+ * reach of either is seen. Wrap first. Appends to p (resizes) and fills x and h.
+ *
+ * There is one layer of images, so a domain between two periodic or two mirror sides must be as
+ * wide as the margin: else fails, "... use a larger box". Between one and two margins a particle
+ * may see a neighbour and its image, or its own image; that is what an endless row looks like. */
 int ghosts_make(struct ghosts *g, const struct box *box, struct particles *p, double margin,
                 struct error *e);
 

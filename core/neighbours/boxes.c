@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* -- Checks -------------------------------------------------------------------------------------- */
+/* -- Checks ------------------------------------------------------------------------------------ */
 
 #define FAR 1e150 /* squares of distances must be numbers too */
 
@@ -54,7 +54,7 @@ int boxes_check(const struct cloud *c, const char *role, struct error *e)
         for (int a = 0; a < c->dim; a++) {
             if (!(fabs(c->x[a][i]) < FAR)) {
                 return error_set(e, EXIT_RUN, "%s particle %zu is nowhere: its %c is %g", role, i,
-                                 "xyz"[a], c->x[a][i]);
+                                 "xyz"[a], c -> x[a][i]);
             }
         }
         if (c->h && !(c->h[i] >= 0 && c->h[i] < FAR)) {
@@ -65,7 +65,7 @@ int boxes_check(const struct cloud *c, const char *role, struct error *e)
     return 0;
 }
 
-/* -- Building ------------------------------------------------------------------------------------ */
+/* -- Building ---------------------------------------------------------------------------------- */
 
 static void empty_box(struct box8 *b, size_t k)
 {
@@ -213,8 +213,8 @@ static int boxes_reorder(struct boxes *b, const struct cloud *c, double typical,
     return 0;
 }
 
-int boxes_make(struct boxes *b, const struct cloud *cloud, double scale, double typical, int threads,
-               struct error *e)
+int boxes_make(struct boxes *b, const struct cloud *cloud, double scale, double typical,
+               int threads, struct error *e)
 {
     memset(b, 0, sizeof *b);
     b->dim = cloud->dim;

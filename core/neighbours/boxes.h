@@ -23,9 +23,9 @@ struct boxes {
     double scale;          /* reach = scale * h; 0 if only the asker's reach counts */
     const uint32_t *order; /* index of the k-th point; NULL: it is k */
     int n_level;
-    struct box8 *level[BOXES_LEVELS];  /* [0]: of the leaves */
-    size_t n_node[BOXES_LEVELS];       /* boxes in use at each level */
-    double *copy;                      /* owned: points in the tree's order, if it has one */
+    struct box8 *level[BOXES_LEVELS]; /* [0]: of the leaves */
+    size_t n_node[BOXES_LEVELS];      /* boxes in use at each level */
+    double *copy;                     /* owned: points in the tree's order, if it has one */
     uint32_t *own_order;
 };
 
@@ -36,8 +36,8 @@ struct query {
 
 /* `scale` makes the reach out of h, skin and slack included; 0 if the sources' reach does not
  * count. `typical` is the reach by which an order is judged. The cloud must outlive the tree. */
-int boxes_make(struct boxes *b, const struct cloud *cloud, double scale, double typical, int threads,
-               struct error *e);
+int boxes_make(struct boxes *b, const struct cloud *cloud, double scale, double typical,
+               int threads, struct error *e);
 void boxes_free(struct boxes *b);
 
 /* Fails with the first point whose position is not finite, or whose h is negative or not finite. */

@@ -6,7 +6,7 @@
 /* Points further away than so many units are taken to be there: squares must stay numbers. */
 #define FAR 1e18
 
-/* -- Plain C ------------------------------------------------------------------------------------- */
+/* -- Plain C ----------------------------------------------------------------------------------- */
 
 static unsigned plain_near_boxes(const struct box8 *b, const struct query *q, int dim)
 {
@@ -33,7 +33,8 @@ static unsigned plain_near_boxes(const struct box8 *b, const struct query *q, in
 static void plain_pack(struct packed_leaf *p, const struct boxes *t, const struct frame *f,
                        uint32_t leaf)
 {
-    size_t first = (size_t)leaf * BOXES_FAN, n = t->n - first < BOXES_FAN ? t->n - first : BOXES_FAN;
+    size_t first = (size_t)leaf * BOXES_FAN,
+           n = t->n - first < BOXES_FAN ? t->n - first : BOXES_FAN;
     double tail[BOXES_FAN];
     float s[BOXES_FAN] = {0};
 
@@ -133,14 +134,15 @@ static size_t plain_near_points(const struct packed_leaf *pack, const uint32_t *
     return found;
 }
 
-static const struct filter plain = {plain_near_boxes, plain_pack, plain_near_leaves, plain_near_points};
+static const struct filter plain = {plain_near_boxes, plain_pack, plain_near_leaves,
+                                    plain_near_points};
 
 const struct filter *filter_plain(void)
 {
     return &plain;
 }
 
-/* -- AVX2 ---------------------------------------------------------------------------------------- */
+/* -- AVX2 -------------------------------------------------------------------------------------- */
 
 #if defined(__x86_64__) && defined(__GNUC__)
 #include <immintrin.h>
@@ -227,7 +229,8 @@ static const uint64_t set_bits[256] = {SET64(0), SET64(64), SET64(128), SET64(19
 /* Writes base + k for every set bit k of the mask (and rubbish up to 8 places on). */
 AVX2_INLINE size_t avx2_put(uint32_t *out, uint32_t base, unsigned mask)
 {
-    __m256i k = _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)(const void *)&set_bits[mask]));
+    __m256i k =
+        _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)(const void *)&set_bits[mask]));
 
     _mm256_storeu_si256((__m256i *)(void *)out, _mm256_add_epi32(k, _mm256_set1_epi32((int)base)));
     return (size_t)__builtin_popcount(mask);

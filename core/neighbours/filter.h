@@ -1,7 +1,7 @@
-/* neighbours/filter.h -- the inner loops of the neighbour search: which boxes of the tree are near a
- * query, and which sources are within reach of any destination of a group. Plain C, and the same
- * with AVX2 and FMA where the processor has them; both keep what is within reach, and may differ on
- * what lies within SLACK beyond it. */
+/* neighbours/filter.h -- the inner loops of the neighbour search: which boxes of the tree are
+ * near a query, and which sources are within reach of any destination of a group. Plain C, and
+ * the same with AVX2 and FMA where the processor has them; both keep what is within reach, and
+ * may differ on what lies within SLACK beyond it. */
 #ifndef NEIGHBOURS_FILTER_H
 #define NEIGHBOURS_FILTER_H
 
@@ -28,11 +28,12 @@ struct packed_box8 { /* eight leaves' boxes, likewise */
     float lo[3][BOXES_FAN], hi[3][BOXES_FAN], reach[BOXES_FAN];
 };
 
-/* A group's destinations, likewise. Lane i sees a source b if s - 2 a.b + a^2 <= max(reach^2, r2). */
+/* A group's destinations, likewise. Lane i sees a source b if s - 2 a.b + a^2 <= max(reach^2,
+ * r2). */
 struct lanes {
-    float m2a[3][8]; /* -2 a */
-    float a2[8];     /* a^2; INFINITY: no destination */
-    float r2[8];     /* reach^2 */
+    float m2a[3][8];           /* -2 a */
+    float a2[8];               /* a^2; INFINITY: no destination */
+    float r2[8];               /* reach^2 */
     float lo[3], hi[3], reach; /* the box around them, their largest reach */
     uint32_t uniform;          /* 1: the largest reach serves for all */
 };
@@ -41,7 +42,8 @@ struct filter {
     /* Bit k: box k of the eight is nearer to the query than the larger reach. */
     unsigned (*near_boxes)(const struct box8 *boxes, const struct query *q, int dim);
     /* Fills a leaf's pack. */
-    void (*pack)(struct packed_leaf *p, const struct boxes *t, const struct frame *f, uint32_t leaf);
+    void (*pack)(struct packed_leaf *p, const struct boxes *t, const struct frame *f,
+                 uint32_t leaf);
     /* Writes which of n packed boxes (padded to a multiple of 8 by boxes at infinity) are near
      * the lanes, as numbers within the pack; their count. Room for n + 8. */
     size_t (*near_leaves)(const struct packed_box8 *boxes, size_t n, const struct lanes *t, int dim,

@@ -1,425 +1,26 @@
-/* neighbours/lists.c -- makes the source lists of groups of destinations. Reads the clouds, writes the
- * list.
- *
- * Groups that stand side by side share one walk through the tree of boxes and one copy of the leaves
- * found, in single precision relative to their common centre (a bundle). Each group then takes from
- * that first the leaves, then the points that it sees. A group whose lanes are far apart is taken in
- * pieces. Lists come out ascending, for the tree is walked in order; only pieces, and sources that
- * stand in an order of the tree's own, are sorted, by setting bits. */
-#include "neighbours/filter.h"
+/* neighbours/lists.c -- makes the source lists of groups of destinations. Reads the clouds,
+ * writes the list. Groups are shared among threads in chunks, whose lists are then joined in
+ * order. */
+#include "neighbours/worker.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #ifdef _OPENMP
 #include <omp.h>
 #endif
 
-#define LANES 8
-#define BUNDLE_MOST 16    /* groups in a bundle */
-#define BUNDLE_SPREAD 5.0 /* half the diagonal of a bundle's box, in units of its smallest reach */
-#define UNIFORM 1.004f    /* reaches of a group that differ less are taken as one */
-#define CHUNK 512         /* groups that a thread takes at a time */
+#define CHUNK 512 /* groups that a thread takes at a time */
 
-/* What all threads share. */
-struct job {
-    const struct cloud *dst;
-    const struct filter *filter;
-    struct boxes tree;
-    double scale;    /* of the destinations' reach, skin and slack included */
-    uint64_t *count; /* [n_group]: sources of each group */
-    struct chunk {
-        size_t worker, begin, n; /* where its lists stand in its worker's memory */
-    } *chunk;
+/* Where a chunk's lists stand in its worker's memory. */
+struct chunk {
+    size_t worker, begin, n;
 };
 
-/* What one thread owns. */
-struct worker {
-    uint32_t *out; /* lists of its chunks, one after the other */
-    size_t n_out, out_capacity;
-    uint32_t *leaf, *chosen; /* of the bundle at hand; of the group */
-    struct packed_leaf *pack;
-    struct packed_box8 *box;
-    size_t n_leaf, leaf_capacity;
-    uint64_t *bits, *summary; /* a bit a source; a bit a word of bits */
-    uint64_t candidates;
-    bool no_memory;
+struct team {
+    struct worker *worker;
+    struct chunk *chunk;
+    size_t n_worker, n_chunk;
 };
-
-/* Destinations [first, last) that are looked after together. */
-struct span {
-    size_t first, last;
-    struct query q;
-    double least; /* reach */
-};
-
-/* -- Memory of a worker -------------------------------------------------------------------------- */
-
-static bool out_reserve(struct worker *w, size_t more)
-{
-    size_t capacity = w->n_out + more;
-    uint32_t *out;
-
-    if (capacity <= w->out_capacity) {
-        return true;
-    }
-    capacity += capacity / 2;
-    out = realloc(w->out, capacity * sizeof *out);
-    if (!out) {
-        w->no_memory = true;
-        return false;
-    }
-    w->out = out;
-    w->out_capacity = capacity;
-    return true;
-}
-
-static bool leaf_reserve(struct worker *w, size_t n)
-{
-    size_t capacity = (n + n / 2 + 127) / 64 * 64;
-    uint32_t *leaf;
-
-    if (n <= w->leaf_capacity) {
-        return true;
-    }
-    leaf = realloc(w->leaf, capacity * sizeof *leaf);
-    w->leaf = leaf ? leaf : w->leaf;
-    free(w->chosen);
-    free(w->pack);
-    free(w->box);
-    w->chosen = malloc((capacity + BOXES_FAN) * sizeof *w->chosen);
-    w->pack = aligned_alloc(64, capacity * sizeof *w->pack);
-    w->box = aligned_alloc(64, capacity / BOXES_FAN * sizeof *w->box);
-    w->leaf_capacity = capacity;
-    if (!leaf || !w->chosen || !w->pack || !w->box) {
-        w->leaf_capacity = 0;
-        w->no_memory = true;
-        return false;
-    }
-    return true;
-}
-
-static void worker_fini(struct worker *w)
-{
-    free(w->out);
-    free(w->leaf);
-    free(w->chosen);
-    free(w->pack);
-    free(w->box);
-    free(w->bits);
-    free(w->summary);
-}
-
-/* -- Sorting a list by setting bits -------------------------------------------------------------- */
-
-/* Sorts list[0..n) ascending, without repeats; the number that is left. All bits are zero before
- * and after. */
-static size_t sort_unique(struct worker *w, size_t n_source, uint32_t *list, size_t n)
-{
-    size_t words = n_source / 64 + 1, first = SIZE_MAX, last = 0, left = 0;
-
-    if (!w->bits) {
-        w->bits = calloc(words, sizeof *w->bits);
-        w->summary = calloc(words / 64 + 1, sizeof *w->summary);
-        if (!w->bits || !w->summary) {
-            w->no_memory = true;
-            return 0;
-        }
-    }
-    for (size_t k = 0; k < n; k++) {
-        size_t word = list[k] / 64, block = word / 64;
-
-        w->bits[word] |= 1ull << list[k] % 64;
-        w->summary[block] |= 1ull << word % 64;
-        first = block < first ? block : first;
-        last = block > last ? block : last;
-    }
-    for (size_t block = first; block <= last && n > 0; block++) {
-        for (uint64_t blocks = w->summary[block]; blocks; blocks &= blocks - 1) {
-            size_t word = block * 64 + (size_t)__builtin_ctzll(blocks);
-
-            for (uint64_t bits = w->bits[word]; bits; bits &= bits - 1) {
-                list[left++] = (uint32_t)(word * 64) + (uint32_t)__builtin_ctzll(bits);
-            }
-            w->bits[word] = 0;
-        }
-        w->summary[block] = 0;
-    }
-    return left;
-}
-
-/* -- Spans --------------------------------------------------------------------------------------- */
-
-static void span_init(struct span *s, const struct job *j, size_t first, size_t last)
-{
-    const struct cloud *c = j->dst;
-
-    s->first = first;
-    s->last = last;
-    s->least = INFINITY;
-    s->q.reach = 0;
-    for (int a = 0; a < 3; a++) {
-        s->q.lo[a] = a < c->dim ? INFINITY : 0;
-        s->q.hi[a] = a < c->dim ? -INFINITY : 0;
-    }
-    for (size_t i = first; i < last; i++) {
-        double reach = j->scale * c->h[i];
-
-        s->least = reach < s->least ? reach : s->least;
-        s->q.reach = reach > s->q.reach ? reach : s->q.reach;
-        for (int a = 0; a < c->dim; a++) {
-            double x = c->x[a][i];
-
-            s->q.lo[a] = x < s->q.lo[a] ? x : s->q.lo[a];
-            s->q.hi[a] = x > s->q.hi[a] ? x : s->q.hi[a];
-        }
-    }
-}
-
-/* Half the diagonal of the box. */
-static double span_radius(const struct span *s)
-{
-    double sum = 0;
-
-    for (int a = 0; a < 3; a++) {
-        double d = s->q.hi[a] - s->q.lo[a];
-
-        sum += d * d;
-    }
-    return sqrt(sum) / 2;
-}
-
-/* Makes `both` of two spans that stand side by side. */
-static void span_join(struct span *both, const struct span *s, const struct span *t)
-{
-    *both = *s;
-    both->last = t->last;
-    both->least = t->least < s->least ? t->least : s->least;
-    both->q.reach = t->q.reach > s->q.reach ? t->q.reach : s->q.reach;
-    for (int a = 0; a < 3; a++) {
-        both->q.lo[a] = t->q.lo[a] < s->q.lo[a] ? t->q.lo[a] : s->q.lo[a];
-        both->q.hi[a] = t->q.hi[a] > s->q.hi[a] ? t->q.hi[a] : s->q.hi[a];
-    }
-}
-
-/* -- The walk ------------------------------------------------------------------------------------ */
-
-/* Appends the leaves below a block of sisters that are near the query, in order. */
-static void walk(const struct job *j, struct worker *w, const struct query *q, int level,
-                 size_t block)
-{
-    unsigned mask = j->filter->near_boxes(&j->tree.level[level][block], q, j->tree.dim);
-
-    if (level == 0 && !leaf_reserve(w, w->n_leaf + BOXES_FAN)) {
-        return;
-    }
-    for (; mask; mask &= mask - 1) {
-        size_t node = block * BOXES_FAN + (size_t)__builtin_ctz(mask);
-
-        if (node >= j->tree.n_node[level]) {
-            return; /* a box without points: a reach beyond measure */
-        }
-        if (level > 0) {
-            walk(j, w, q, level - 1, node);
-        } else {
-            w->leaf[w->n_leaf++] = (uint32_t)node;
-        }
-    }
-}
-
-/* -- Single precision ---------------------------------------------------------------------------- */
-
-static void frame_init(struct frame *f, const struct job *j, const struct span *s)
-{
-    double unit = s->q.reach;
-
-    if (!(unit > 0)) {
-        unit = j->tree.level[j->tree.n_level - 1][0].reach[0];
-    }
-    f->inverse = unit > 0 ? 1 / unit : 1;
-    for (int a = 0; a < 3; a++) {
-        f->centre[a] = s->q.lo[a] + (s->q.hi[a] - s->q.lo[a]) / 2;
-    }
-}
-
-/* Leaf k of the bundle's pack. */
-static void pack_box(const struct job *j, const struct frame *f, uint32_t leaf,
-                     struct packed_box8 *pack, size_t k)
-{
-    const struct box8 *from = &j->tree.level[0][leaf / BOXES_FAN];
-    struct packed_box8 *to = &pack[k / BOXES_FAN];
-    size_t q = leaf % BOXES_FAN, p = k % BOXES_FAN;
-
-    for (int a = 0; a < j->tree.dim; a++) {
-        to->lo[a][p] = (float)((from->lo[a][q] - f->centre[a]) * f->inverse);
-        to->hi[a][p] = (float)((from->hi[a][q] - f->centre[a]) * f->inverse);
-    }
-    to->reach[p] = (float)(from->reach[q] * f->inverse);
-}
-
-/* Finds and packs the leaves near a span. */
-static void look(const struct job *j, struct worker *w, const struct span *s, struct frame *f)
-{
-    w->n_leaf = 0;
-    walk(j, w, &s->q, j->tree.n_level - 1, 0);
-    if (w->no_memory) {
-        w->n_leaf = 0;
-        return;
-    }
-    frame_init(f, j, s);
-    for (size_t k = 0; k < w->n_leaf; k++) {
-        j->filter->pack(&w->pack[k], &j->tree, f, w->leaf[k]);
-        pack_box(j, f, w->leaf[k], w->box, k);
-    }
-    for (size_t k = w->n_leaf; k % BOXES_FAN; k++) {
-        struct packed_box8 *none = &w->box[k / BOXES_FAN];
-
-        for (int a = 0; a < 3; a++) {
-            none->lo[a][k % BOXES_FAN] = INFINITY;
-            none->hi[a][k % BOXES_FAN] = -INFINITY;
-        }
-        none->reach[k % BOXES_FAN] = 0;
-    }
-}
-
-static void lanes_init(struct lanes *t, const struct job *j, const struct frame *f, size_t first,
-                       size_t last)
-{
-    const struct cloud *c = j->dst;
-    float least = INFINITY;
-
-    memset(t, 0, sizeof *t);
-    for (size_t i = 0; i < LANES; i++) {
-        size_t k = first + i < last ? first + i : last - 1;
-        double a2 = 0;
-
-        for (int a = 0; a < c->dim; a++) {
-            double x = (c->x[a][k] - f->centre[a]) * f->inverse;
-            float near = (float)x;
-
-            t->m2a[a][i] = -2 * near;
-            a2 += x * x;
-            t->lo[a] = i == 0 || near < t->lo[a] ? near : t->lo[a];
-            t->hi[a] = i == 0 || near > t->hi[a] ? near : t->hi[a];
-        }
-        t->a2[i] = (float)a2;
-        float reach = (float)(j->scale * c->h[k] * f->inverse);
-
-        t->r2[i] = reach * reach;
-        t->reach = reach > t->reach ? reach : t->reach;
-        least = reach < least ? reach : least;
-    }
-    /* The filter is a third faster with one reach for all, so that a little more is worth it. */
-    t->uniform = t->reach <= UNIFORM * least;
-}
-
-/* Appends the sources that destinations [first, last), at most a group, see of the packed leaves. */
-static void take(const struct job *j, struct worker *w, const struct frame *f, size_t first,
-                 size_t last)
-{
-    struct lanes t;
-    size_t n, found;
-
-    if (w->n_leaf == 0) {
-        return;
-    }
-    lanes_init(&t, j, f, first, last);
-    n = j->filter->near_leaves(w->box, w->n_leaf, &t, j->tree.dim, w->chosen);
-    if (!out_reserve(w, BOXES_FAN * (n + 1))) {
-        return;
-    }
-    found = j->filter->near_points(w->pack, w->leaf, w->chosen, n, &t, j->tree.dim,
-                                   w->out + w->n_out);
-    for (size_t k = w->n_out; j->tree.order && k < w->n_out + found; k++) {
-        w->out[k] = j->tree.order[w->out[k]];
-    }
-    w->n_out += found;
-    w->candidates += n * BOXES_FAN * LANES;
-}
-
-/* -- Groups -------------------------------------------------------------------------------------- */
-
-static void group_span(struct span *s, const struct job *j, size_t group)
-{
-    size_t first = group * LANES, n = j->dst->n;
-
-    span_init(s, j, first, first + LANES < n ? first + LANES : n);
-}
-
-/* A group whose lanes are far apart, piece by piece. */
-static void group_in_pieces(const struct job *j, struct worker *w, size_t group)
-{
-    size_t start = w->n_out, first = group * LANES;
-    size_t last = first + LANES < j->dst->n ? first + LANES : j->dst->n;
-
-    while (first < last) {
-        struct span piece, more, both;
-        struct frame f;
-
-        span_init(&piece, j, first, first + 1);
-        for (size_t i = first + 1; i < last; i++) {
-            span_init(&more, j, i, i + 1);
-            span_join(&both, &piece, &more);
-            if (span_radius(&both) > both.least) {
-                break;
-            }
-            piece = both;
-        }
-        look(j, w, &piece, &f);
-        take(j, w, &f, piece.first, piece.last);
-        first = piece.last;
-    }
-    w->n_out = start + sort_unique(w, j->tree.n, w->out + start, w->n_out - start);
-    j->count[group] = w->n_out - start;
-}
-
-/* Groups [first, last), which stand close together. */
-static void bundle(const struct job *j, struct worker *w, const struct span *s, size_t first,
-                   size_t last)
-{
-    struct frame f;
-
-    look(j, w, s, &f);
-    for (size_t group = first; group < last; group++) {
-        size_t start = w->n_out, begin = group * LANES, end = begin + LANES;
-
-        take(j, w, &f, begin, end < j->dst->n ? end : j->dst->n);
-        if (j->tree.order) {
-            w->n_out = start + sort_unique(w, j->tree.n, w->out + start, w->n_out - start);
-        }
-        j->count[group] = w->n_out - start;
-    }
-}
-
-static void chunk_make(const struct job *j, struct worker *w, size_t first, size_t last)
-{
-    struct span s, next, both;
-
-    group_span(&next, j, first);
-    for (size_t group = first; group < last && !w->no_memory;) {
-        size_t end = group + 1;
-        bool whole = span_radius(&next) <= SPREAD_MOST * next.least;
-
-        s = next;
-        for (; end < last; end++) {
-            group_span(&next, j, end);
-            span_join(&both, &s, &next);
-            if (!whole || end - group == BUNDLE_MOST ||
-                span_radius(&both) > BUNDLE_SPREAD * both.least) {
-                break;
-            }
-            s = both;
-        }
-        if (whole) {
-            bundle(j, w, &s, group, end);
-        } else {
-            group_in_pieces(j, w, group);
-        }
-        group = end;
-    }
-}
-
-/* -- The list ------------------------------------------------------------------------------------ */
 
 static int worker_number(void)
 {
@@ -431,25 +32,22 @@ static int worker_number(void)
 }
 
 /* Which thread makes a chunk does not matter: what is in it depends on nothing but its groups. */
-static void job_run(struct job *j, struct worker *worker, size_t n_chunk, size_t n_group,
-                    int threads)
+static void team_run(struct team *t, const struct job *j, size_t n_group)
 {
-    (void)threads;
-#pragma omp parallel for schedule(dynamic, 1) num_threads(threads)
-    for (size_t k = 0; k < n_chunk; k++) {
+#pragma omp parallel for schedule(dynamic, 1) num_threads((int)t->n_worker)
+    for (size_t k = 0; k < t->n_chunk; k++) {
         size_t me = (size_t)worker_number(), first = k * CHUNK, last = first + CHUNK;
-        struct worker *w = &worker[me];
+        struct worker *w = &t->worker[me];
 
-        j->chunk[k].worker = me;
-        j->chunk[k].begin = w->n_out;
-        chunk_make(j, w, first, last < n_group ? last : n_group);
-        j->chunk[k].n = w->n_out - j->chunk[k].begin;
+        t->chunk[k].worker = me;
+        t->chunk[k].begin = w->n_out;
+        worker_make(j, w, first, last < n_group ? last : n_group);
+        t->chunk[k].n = w->n_out - t->chunk[k].begin;
     }
 }
 
 /* Joins the chunks in the order of their groups. */
-static int job_collect(struct group_list *list, const struct job *j, struct worker *worker,
-                       size_t n_chunk, int threads, struct error *e)
+static int team_collect(struct group_list *list, struct team *t, struct error *e)
 {
     uint64_t sum = 0;
 
@@ -460,10 +58,10 @@ static int job_collect(struct group_list *list, const struct job *j, struct work
         sum += count;
     }
     list->begin[list->n_group] = sum;
-    if (threads == 1) {
-        list->source = worker[0].out; /* which was the list's to begin with */
-        list->capacity = worker[0].out_capacity;
-        worker[0].out = NULL;
+    if (t->n_worker == 1) {
+        list->source = t->worker[0].out; /* which was the list's to begin with */
+        list->capacity = t->worker[0].out_capacity;
+        t->worker[0].out = NULL;
         return 0;
     }
     if (sum > list->capacity) {
@@ -475,54 +73,63 @@ static int job_collect(struct group_list *list, const struct job *j, struct work
             return error_memory(e, "neighbour lists", sum * sizeof *list->source);
         }
     }
-#pragma omp parallel for schedule(static) num_threads(threads)
-    for (size_t k = 0; k < n_chunk; k++) {
-        const struct chunk *c = &j->chunk[k];
+#pragma omp parallel for schedule(static) num_threads((int)t->n_worker)
+    for (size_t k = 0; k < t->n_chunk; k++) {
+        const struct chunk *c = &t->chunk[k];
 
         if (c->n > 0) {
-            memcpy(list->source + list->begin[k * CHUNK], worker[c->worker].out + c->begin,
+            memcpy(list->source + list->begin[k * CHUNK], t->worker[c->worker].out + c->begin,
                    c->n * sizeof *list->source);
         }
     }
     return 0;
 }
 
-/* Shares the groups among workers; the counts go to list->begin. */
-static int job_do(struct group_list *list, struct job *j, int threads, struct error *e)
+/* Whether every worker had the memory it needed; counts their work. */
+static int team_check(struct group_list *list, const struct team *t, struct error *e)
 {
-    size_t n_chunk = (list->n_group + CHUNK - 1) / CHUNK;
-    size_t n_worker = (size_t)threads < n_chunk ? (size_t)threads : n_chunk, bytes = 0;
-    struct worker *worker = calloc(n_worker, sizeof *worker);
-    int status = 0;
+    size_t bytes = 0;
+    bool no_memory = false;
 
-    j->chunk = calloc(n_chunk, sizeof *j->chunk);
-    if (!worker || !j->chunk) {
-        status = error_memory(e, "neighbour lists", n_chunk * sizeof *j->chunk);
-    } else {
-        if (n_worker == 1) {
-            worker[0].out = list->source;
-            worker[0].out_capacity = list->capacity;
-            list->source = NULL;
-            list->capacity = 0;
-        }
-        job_run(j, worker, n_chunk, list->n_group, (int)n_worker);
-    }
     list->candidates = 0;
-    for (size_t k = 0; k < n_worker && status == 0; k++) {
-        list->candidates += worker[k].candidates;
-        bytes += worker[k].n_out * sizeof *worker[k].out;
-        if (worker[k].no_memory) {
-            status = error_memory(e, "neighbour lists (and more)", bytes);
-        }
+    for (size_t k = 0; k < t->n_worker; k++) {
+        list->candidates += t->worker[k].candidates;
+        bytes += t->worker[k].n_out * sizeof *t->worker[k].out;
+        no_memory = no_memory || t->worker[k].no_memory;
     }
+    return no_memory ? error_memory(e, "neighbour lists, and more", bytes) : 0;
+}
+
+/* Shares the groups among threads. */
+static int list_fill(struct group_list *list, const struct job *j, int threads, struct error *e)
+{
+    struct team t = {.n_chunk = (list->n_group + CHUNK - 1) / CHUNK};
+    int status = -1;
+
+    t.n_worker = (size_t)threads < t.n_chunk ? (size_t)threads : t.n_chunk;
+    t.worker = calloc(t.n_worker, sizeof *t.worker);
+    t.chunk = calloc(t.n_chunk, sizeof *t.chunk);
+    if (!t.worker || !t.chunk) {
+        error_memory(e, "neighbour lists", t.n_chunk * sizeof *t.chunk);
+        goto done;
+    }
+    if (t.n_worker == 1) {
+        t.worker[0].out = list->source;
+        t.worker[0].out_capacity = list->capacity;
+        list->source = NULL;
+        list->capacity = 0;
+    }
+    team_run(&t, j, list->n_group);
+    status = team_check(list, &t, e);
     if (status == 0) {
-        status = job_collect(list, j, worker, n_chunk, (int)n_worker, e);
+        status = team_collect(list, &t, e);
     }
-    for (size_t k = 0; worker && k < n_worker; k++) {
-        worker_fini(&worker[k]);
+done:
+    for (size_t k = 0; t.worker && k < t.n_worker; k++) {
+        worker_fini(&t.worker[k]);
     }
-    free(worker);
-    free(j->chunk);
+    free(t.worker);
+    free(t.chunk);
     return status;
 }
 
@@ -599,10 +206,10 @@ int filter_make(struct group_list *list, const struct cloud *dst, const struct c
         return -1;
     }
     j.count = list->begin;
-    status = job_do(list, &j, threads, e);
+    status = list_fill(list, &j, threads, e);
     boxes_free(&j.tree);
     if (status != 0) {
-        list->n_group = 0;
+        list->n_group = 0; /* nobody shall read half a list */
     }
     return status;
 }

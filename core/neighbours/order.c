@@ -1,9 +1,10 @@
 /* neighbours/order.c -- puts points into linear cell order. Writes only the order.
  *
- * A counting sort into cells. Where the box is so empty that there would be more cells than points,
- * larger cells are taken first; a cell that holds many points is sorted into smaller cells of its own,
- * within the points' own bounds. So an outlier costs a level of recursion and no memory, and the
- * dense places of a cloud with variable smoothing length are as well ordered as the thin ones. */
+ * A counting sort into cells. Where the box is so empty that there would be more cells than
+ * points, larger cells are taken first; a cell that holds many points is sorted into smaller
+ * cells of its own, within the points' own bounds. So an outlier costs a level of recursion and
+ * no memory, and the dense places of a cloud with variable smoothing length are as well ordered
+ * as the thin ones. */
 #include "neighbours/neighbours.h"
 
 #include "neighbours/boxes.h"
@@ -29,7 +30,7 @@ struct grid {
     size_t step[3], n;      /* from cell to cell along an axis; all cells */
 };
 
-/* -- Within a cell ------------------------------------------------------------------------------- */
+/* -- Within a cell ----------------------------------------------------------------------------- */
 
 /* By x, then by id, then by index. */
 static bool before(const struct sorter *s, uint32_t i, uint32_t j)
@@ -93,7 +94,7 @@ static void sort_by_x(const struct sorter *s, uint32_t *order, size_t n)
     }
 }
 
-/* -- Cells --------------------------------------------------------------------------------------- */
+/* -- Cells ------------------------------------------------------------------------------------- */
 
 /* Number of cells of this edge; infinite if there are too many to count. */
 static double count_cells(const double *lo, const double *hi, int dim, double edge)

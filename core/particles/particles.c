@@ -37,7 +37,7 @@ size_t property_size(uint32_t type)
     return type == SPH_INT32 ? 4 : 8;
 }
 
-/* -- Memory of a column -------------------------------------------------------------------------- */
+/* -- Memory of a column ------------------------------------------------------------------------ */
 
 static size_t round_up(size_t n, size_t unit)
 {
@@ -139,7 +139,7 @@ static void column_clear(struct column *c, size_t first, size_t last)
     }
 }
 
-/* -- The array ----------------------------------------------------------------------------------- */
+/* -- The array --------------------------------------------------------------------------------- */
 
 int particles_init(struct particles *p, const char *name, int dim, struct error *e)
 {
@@ -207,9 +207,8 @@ int particles_find(const struct particles *p, const char *name)
 
 static const char *type_name(uint32_t type)
 {
-    static const char *const name[] = {"nothing", "a scalar",       "a vector",
-                                       "a symmetric tensor", "a matrix", "an int32",
-                                       "an int64"};
+    static const char *const name[] = {"nothing",  "a scalar", "a vector", "a symmetric tensor",
+                                       "a matrix", "an int32", "an int64"};
 
     return type < sizeof name / sizeof name[0] ? name[type] : "of an unknown type";
 }
@@ -286,8 +285,8 @@ static int unlock(struct particles *p, struct error *e)
 int particles_resize(struct particles *p, size_t n, size_t n_ghost, struct error *e)
 {
     /* Ghosts stand behind the particles: if their number changes, ghosts are forgotten. */
-    size_t keep = n == p->n ? p->n + (n_ghost < p->n_ghost ? n_ghost : p->n_ghost)
-                            : (n < p->n ? n : p->n);
+    size_t keep =
+        n == p->n ? p->n + (n_ghost < p->n_ghost ? n_ghost : p->n_ghost) : (n < p->n ? n : p->n);
     size_t need = n + n_ghost;
 
     if (need < n || need > UINT32_MAX) {
@@ -317,7 +316,7 @@ int particles_resize(struct particles *p, size_t n, size_t n_ghost, struct error
     return 0;
 }
 
-/* -- Order --------------------------------------------------------------------------------------- */
+/* -- Order ------------------------------------------------------------------------------------- */
 
 /* By bytes, for a column may hold integers or reals; `size` is a constant where it is called. */
 static inline void permute(char *x, char *scratch, const uint32_t *order, size_t n, size_t size)
@@ -362,7 +361,7 @@ int particles_permute(struct particles *p, const uint32_t *order, struct error *
     return 0;
 }
 
-/* -- Views --------------------------------------------------------------------------------------- */
+/* -- Views ------------------------------------------------------------------------------------- */
 
 sph_column particles_column(const struct particles *p, int column)
 {

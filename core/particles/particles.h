@@ -54,7 +54,8 @@ int particles_find(const struct particles *p, const char *name);
 /* Component c of a real column, or NULL if there is no such column. */
 double *particles_real(const struct particles *p, const char *name, uint32_t c);
 
-/* Room for n + n_ghost particles; contents are kept, new elements are zero. */
+/* Room for n + n_ghost particles; contents are kept, new elements are zero. When n changes, what
+ * the ghosts held is lost. Columns may move: fetch pointers anew. */
 int particles_resize(struct particles *p, size_t n, size_t n_ghost, struct error *e);
 /* new[i] = old[order[i]] for all real particles, in every `state` column (others become stale). */
 int particles_permute(struct particles *p, const uint32_t *order, struct error *e);
@@ -64,7 +65,9 @@ sph_column particles_column(const struct particles *p, int column);
 size_t particles_bytes(const struct particles *p);
 
 /* The audit: with `guarded` set before any column is added, every column lives on pages of its own;
- * particles_guard sets what may be done with it: 0 nothing, 1 read, 2 read and write. */
+ * particles_guard sets what may be done with it: 0 nothing, 1 read, 2 read and write. 0, or -1 if
+ * the array is not guarded. Resizing and permuting open every column. Behind each stands a page
+ * that nobody may touch. */
 int particles_guard(struct particles *p, int column, int access);
 /* The column that an address belongs to, or -1. */
 int particles_at_address(const struct particles *p, const void *address);

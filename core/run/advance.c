@@ -3,6 +3,9 @@
 #include <omp.h>
 #include <stdio.h>
 
+/* Fewer elements than this are done before a second thread has woken. */
+#define PARALLEL_FROM 50000
+
 static double *plane(const struct particles *p, int column, uint32_t c)
 {
     return (double *)p->column[column].data + (size_t)c * p->column[column].plane;
@@ -21,11 +24,11 @@ static void combine(const struct run *r, double *y, const double *base, double a
 {
     const long end = (long)n;
     if (rate0) {
-#pragma omp parallel for num_threads(r->threads)
+#pragma omp parallel for num_threads(r->threads) if (end > PARALLEL_FROM)
         for (long i = 0; i < end; i++)
             y[i] = base[i] + a * (rate[i] - rate0[i]);
     } else {
-#pragma omp parallel for num_threads(r->threads)
+#pragma omp parallel for num_threads(r->threads) if (end > PARALLEL_FROM)
         for (long i = 0; i < end; i++)
             y[i] = base[i] + a * rate[i];
     }

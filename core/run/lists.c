@@ -149,7 +149,8 @@ static struct cloud cloud_of(const struct run *r, size_t array, bool ghosts)
     return cloud;
 }
 
-static int make_lists(struct run *r, struct error *e)
+/* True pairs are counted when the particles are sorted; in between their share of the lists is taken to last. */
+static int make_lists(struct run *r, bool counted, struct error *e)
 {
     size_t n = r->plan->n_array;
     for (size_t d = 0; d < n; d++)
@@ -161,6 +162,10 @@ static int make_lists(struct run *r, struct error *e)
             if (group_list_make(&r->list[d * n + s], &dst, &src, reach == SPH_SYMMETRIC, r->skin,
                                 r->threads, e))
                 return error_prefix(e, "neighbours of \"%s\"", r->plan->array[d].p.name);
+            struct group_list *list = &r->list[d * n + s];
+            uint64_t entries = list->begin[list->n_group];
+            if (counted && entries)
+                list->true_share = (double)group_list_count(list, &dst, &src) / (double)entries;
         }
     return 0;
 }
@@ -172,8 +177,8 @@ int run_lists(struct run *r, bool within, struct error *e)
     double begin = omp_get_wtime();
     int status = 0;
     if (!still_right(r)) {
+        bool sort = !within && (!r->lists_made || ++r->builds_since_sort >= BUILDS_PER_SORT);
         if (!within) {
-            bool sort = !r->lists_made || ++r->builds_since_sort >= BUILDS_PER_SORT;
             for (size_t a = 0; a < r->plan->n_array; a++)
                 sides_wrap(&r->plan->scene->box, &r->plan->array[a].p);
             for (size_t a = 0; !status && sort && a < r->plan->n_array; a++)
@@ -184,7 +189,7 @@ int run_lists(struct run *r, bool within, struct error *e)
             }
         }
         if (!status)
-            status = make_ghosts(r, e) || make_lists(r, e) || keep_reference(r, e) ? -1 : 0;
+            status = make_ghosts(r, e) || make_lists(r, sort, e) || keep_reference(r, e) ? -1 : 0;
         r->lists_made = !status;
         r->cost.list_builds++;
     }

@@ -216,11 +216,13 @@ static void count_pairs(struct run *r, struct pass *p, const struct ranges *rang
     p->sweeps++;
     for (size_t s = 0; p->shape == SPH_PAIR && s < p->n_src; s++) {
         const struct group_list *list = &r->list[p->dst.array * plan->n_array + p->src[s].array];
-        uint64_t pairs = list->pairs, n = plan->array[p->dst.array].p.n, some = 0;
-        for (size_t k = 0; k < ranges->n; k++)
-            some += ranges->count[k];
-        if (some < n)
-            pairs = (uint64_t)((double)pairs * (double)some / (double)n);
+        uint64_t entries = 0;
+        for (size_t k = 0; k < ranges->n; k++) {
+            uint64_t g = ranges->first[k] / SPH_LANES;
+            uint64_t end = (ranges->first[k] + ranges->count[k] + SPH_LANES - 1) / SPH_LANES;
+            entries += list->begin[end] - list->begin[g];
+        }
+        uint64_t pairs = (uint64_t)(list->true_share * (double)entries);
         p->pairs += pairs;
         r->cost.pairs += pairs;
     }

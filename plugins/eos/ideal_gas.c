@@ -8,14 +8,14 @@ static const sph_param params[] = {
     {"gamma", "", "ratio of the specific heats", 5. / 3, 1.000001, 100, NULL},
 };
 static const sph_prop props[] = {
-    {"rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_READ, 0},
-    {"u", "J/kg", "specific internal energy", SPH_SCALAR, SPH_DST_READ, 0},
+    {"rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_READ, NAN},
+    {"u", "J/kg", "specific internal energy", SPH_SCALAR, SPH_DST_READ, NAN},
     {"p", "J/m^d", "pressure", SPH_SCALAR, SPH_DST_WRITE, 0},
     {"cs", "m/s", "speed of sound", SPH_SCALAR, SPH_DST_WRITE, 0},
 };
 static const sph_prop inverse_props[] = {
-    {"rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_READ, 0},
-    {"p", "J/m^d", "pressure", SPH_SCALAR, SPH_DST_READ, 0},
+    {"rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_READ, NAN},
+    {"p", "J/m^d", "pressure", SPH_SCALAR, SPH_DST_READ, NAN},
     {"u", "J/kg", "specific internal energy", SPH_SCALAR, SPH_DST_WRITE, 0},
 };
 

@@ -20,7 +20,7 @@ static const sph_param params[] = {
 
 enum { PROP_X, PROP_RHO, PROP_P, PROP_V, PROP_U };
 static const sph_prop props[] = {
-    {"x", "m", "position; only its first component matters", SPH_VECTOR, SPH_DST_READ, 0},
+    {"x", "m", "position; only its first component matters", SPH_VECTOR, SPH_DST_READ, NAN},
     {"rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_WRITE, 0},
     {"p", "J/m^d", "pressure", SPH_SCALAR, SPH_DST_WRITE, 0},
     {"v", "m/s", "velocity", SPH_VECTOR, SPH_DST_WRITE, 0},

@@ -101,7 +101,6 @@ static void properties(void **state)
         {KIND_EXACT, "access of property \"rho\" has unknown bits",
          NUMBER(mock.prop[0].access, 65)},
         {KIND_EXACT, "more than one of write, sum, max and min", NUMBER(mock.prop[0].access, 12)},
-        {KIND_EXACT, "start of property \"p\" is not a number", REAL(mock.prop[1].start, NAN)},
         {KIND_EXACT, "unit of property \"p\" is not", TEXT(mock.prop[1].unit, "\n")},
         {KIND_EXACT, "doc of property \"p\" is not", TEXT(mock.prop[1].doc, "\xc3")},
         {KIND_EXACT, "read at the sources", NUMBER(mock.prop[0].access, SPH_SRC_READ)},
@@ -280,6 +279,18 @@ static void plugins(void **state)
     expect("is unknown to this sph");
 }
 
+static void starts(void **state)
+{
+    (void)state;
+    mock_reset(KIND_FUNCTION);
+    mock.prop[0].start = NAN; /* read: the scene must give it */
+    assert_null(mock_refusal());
+    mock.prop[1].access = SPH_DST_SUM;
+    assert_null(mock_refusal());
+    mock.prop[1].start = NAN;
+    expect("start of property \"p\" is not a number");
+}
+
 /* -- Mutations -------- */
 
 static uint32_t next_random(uint64_t *s)
@@ -359,6 +370,7 @@ int main(void)
         cmocka_unit_test(recipes),
         cmocka_unit_test(missing_code),
         cmocka_unit_test(plugins),
+        cmocka_unit_test(starts),
         cmocka_unit_test(mutations_do_no_harm),
     };
 

@@ -100,9 +100,9 @@ static void names_memory(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sets_sentence_and_code),  cmocka_unit_test(prefixes),
-        cmocka_unit_test(takes_its_own_text),      cmocka_unit_test(cuts_between_characters),
-        cmocka_unit_test(keeps_what_just_fits),    cmocka_unit_test(names_memory),
+        cmocka_unit_test(sets_sentence_and_code), cmocka_unit_test(prefixes),
+        cmocka_unit_test(takes_its_own_text),     cmocka_unit_test(cuts_between_characters),
+        cmocka_unit_test(keeps_what_just_fits),   cmocka_unit_test(names_memory),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

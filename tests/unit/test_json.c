@@ -191,7 +191,7 @@ static void test_set_wrong(void **state)
                  {"list.x=1", "not an index"},
                  {"list.5=1", "give 0 to 1"},
                  {"list.-1=1", "not an index"},
-                 {"time={\"end\": 1", "character 11"},
+                 {"time={\"end\": 1", "character 10"},
                  {"time.end=1e999", "too large"},
                  {"title=\xff", "UTF-8"}};
     (void)state;

@@ -1,134 +1,17 @@
-/* tests/unit/test_neighbours.c -- lists against all pairs, for clouds of many kinds; threads; order. */
+/* tests/unit/test_neighbours.c -- lists against all pairs, for clouds of many kinds. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <cmocka.h>
 
+#include "clouds.h"
 #include "domain/sides.h"
 #include "neighbours/filter.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #define GROUP 8
 
-static double random_unit(uint64_t *seed)
-{
-    *seed = *seed * 6364136223846793005ull + 1442695040888963407ull;
-    return (double)(*seed >> 11) / 9007199254740992.0;
-}
-
-/* -- Clouds -------------------------------------------------------------------------------------- */
-
-struct owned {
-    struct cloud c;
-    double *x[3], *h;
-};
-
-static struct owned cloud_new(int dim, size_t n)
-{
-    struct owned o = {.c = {.dim = dim, .n = n, .scale = 2}};
-
-    for (int a = 0; a < dim; a++) {
-        o.c.x[a] = o.x[a] = calloc(n + 1, sizeof(double)); /* not a byte after the last is read */
-        assert_non_null(o.x[a]);
-    }
-    o.c.h = o.h = calloc(n + 1, sizeof(double));
-    assert_non_null(o.h);
-    return o;
-}
-
-static void cloud_free(struct owned *o)
-{
-    for (int a = 0; a < 3; a++) {
-        free(o->x[a]);
-    }
-    free(o->h);
-}
-
-/* h at which a point of an even cloud in the unit box has about `count` neighbours. */
-static double even_h(int dim, size_t n, double count)
-{
-    static const double ball[4] = {0, 2, 3.14159265, 4.18879020};
-
-    return 0.5 * pow(count / (ball[dim] * (double)(n ? n : 1)), 1.0 / dim);
-}
-
-static struct owned cloud_even(int dim, size_t n, uint64_t seed)
-{
-    struct owned o = cloud_new(dim, n);
-
-    for (size_t i = 0; i < n; i++) {
-        for (int a = 0; a < dim; a++) {
-            o.x[a][i] = random_unit(&seed);
-        }
-        o.h[i] = even_h(dim, n, 20);
-    }
-    return o;
-}
-
-/* Dense balls in a thin gas; h by the place's density, `ratio` at most. */
-static struct owned cloud_clustered(int dim, size_t n, double ratio, uint64_t seed)
-{
-    struct owned o = cloud_even(dim, n, seed);
-    double thin = even_h(dim, n, 20);
-
-    for (size_t i = 0; i < n; i++) {
-        double size = i % 4 == 0 ? 1 : 1 / ratio * (1 + (double)(i % 7));
-
-        for (int a = 0; a < dim; a++) {
-            double centre = size < 1 ? 0.2 + 0.2 * (double)(i % 3) : 0;
-
-            o.x[a][i] = centre + size * o.x[a][i];
-        }
-        o.h[i] = thin * size * (0.8 + 0.4 * random_unit(&seed));
-    }
-    return o;
-}
-
-/* A dense core in a thin gas, smoothly: radii to the power p, h by the local density. */
-static struct owned cloud_core(int dim, size_t n, double p, uint64_t seed)
-{
-    struct owned o = cloud_even(dim, n, seed);
-
-    for (size_t i = 0; i < n; i++) {
-        double r = 1e-9;
-
-        for (int a = 0; a < dim; a++) {
-            r += (o.x[a][i] - 0.5) * (o.x[a][i] - 0.5);
-        }
-        r = sqrt(r);
-        for (int a = 0; a < dim; a++) {
-            o.x[a][i] = (o.x[a][i] - 0.5) * pow(r, p - 1);
-        }
-        o.h[i] *= pow(p * pow(r, dim * (p - 1)), 1.0 / dim);
-    }
-    return o;
-}
-
-static void cloud_sort(struct owned *o, double cell)
-{
-    size_t n = o->c.n;
-    uint32_t *order = malloc((n + 1) * sizeof *order);
-    double *old = malloc((n + 1) * sizeof *old);
-    struct error e;
-
-    assert_int_equal(cell_order(&o->c, NULL, cell, order, &e), 0);
-    for (int k = 0; k <= o->c.dim; k++) {
-        double *x = k < o->c.dim ? o->x[k] : o->h;
-
-        memcpy(old, x, n * sizeof *x);
-        for (size_t i = 0; i < n; i++) {
-            x[i] = old[order[i]];
-        }
-    }
-    free(order);
-    free(old);
-}
-
-/* -- All pairs ----------------------------------------------------------------------------------- */
+/* -- All pairs --------------------------------------------------------------------------------- */
 
 static double square(const struct cloud *d, size_t i, const struct cloud *s, size_t j)
 {
@@ -207,7 +90,7 @@ static void check(const struct cloud *d, const struct cloud *s)
     check_with(d, s, filter_plain());
 }
 
-/* -- Lists --------------------------------------------------------------------------------------- */
+/* -- Lists ------------------------------------------------------------------------------------- */
 
 static void few_points(void **state)
 {
@@ -557,7 +440,8 @@ static void work_is_bounded(void **state)
 static void refuses(void **state)
 {
     static const double bad[] = {NAN, INFINITY, -INFINITY, 1e200};
-    struct owned o = cloud_even(2, 100, 1), other = cloud_even(3, 10, 1), good = cloud_even(2, 50, 2);
+    struct owned o = cloud_even(2, 100, 1), other = cloud_even(3, 10, 1),
+                 good = cloud_even(2, 50, 2);
     struct group_list l = {0};
     struct error e;
     uint32_t order[100];
@@ -594,133 +478,6 @@ static void refuses(void **state)
     cloud_free(&good);
 }
 
-/* -- Order --------------------------------------------------------------------------------------- */
-
-static void check_permutation(const uint32_t *order, size_t n)
-{
-    char *seen = calloc(n + 1, 1);
-
-    for (size_t i = 0; i < n; i++) {
-        assert_true(order[i] < n);
-        assert_false(seen[order[i]]);
-        seen[order[i]] = 1;
-    }
-    free(seen);
-}
-
-static void orders_by_cells(void **state)
-{
-    struct error e;
-
-    (void)state;
-    for (int dim = 1; dim <= 3; dim++) {
-        /* Few enough a cell that none is divided. */
-        size_t n = 3000;
-        double cell = pow(8.0 / (double)n, 1.0 / dim);
-        struct owned o = cloud_even(dim, n, 77);
-        uint32_t *order = malloc(n * sizeof *order);
-
-        for (size_t i = 0; i < n; i++) {
-            o.x[0][i] -= 0.5; /* cells count from a multiple of the edge, not from zero */
-        }
-        assert_int_equal(cell_order(&o.c, NULL, cell, order, &e), 0);
-        check_permutation(order, n);
-        for (size_t i = 0; i + 1 < n; i++) {
-            double key[2] = {0, 0};
-
-            for (int k = 0; k < 2; k++) {
-                for (int a = dim - 1; a >= 0; a--) {
-                    key[k] = 10000 * key[k] + floor(o.x[a][order[i + (size_t)k]] / cell);
-                }
-            }
-            assert_true(key[0] <= key[1]);
-            if (!(key[0] < key[1])) {
-                assert_true(o.x[0][order[i]] <= o.x[0][order[i + 1]]);
-            }
-        }
-        free(order);
-        cloud_free(&o);
-    }
-}
-
-/* Equal positions by id; the same whatever order the points came in. */
-static void order_follows_the_id(void **state)
-{
-    struct owned o = cloud_clustered(2, 2000, 30, 5);
-    size_t n = o.c.n;
-    int64_t *id = malloc(n * sizeof *id), *first = malloc(n * sizeof *id);
-    uint32_t *order = malloc(n * sizeof *order);
-    struct error e;
-
-    (void)state;
-    for (size_t i = 0; i < n; i++) {
-        id[i] = (int64_t)i;
-        if (i % 5 == 0) {
-            o.x[0][i] = o.x[1][i] = 0.3;
-        }
-    }
-    for (int round = 0; round < 3; round++) {
-        uint64_t seed = (uint64_t)round;
-
-        assert_int_equal(cell_order(&o.c, id, 0.05, order, &e), 0);
-        check_permutation(order, n);
-        for (size_t i = 0; i < n; i++) {
-            if (round == 0) {
-                first[i] = id[order[i]];
-            } else {
-                assert_int_equal(id[order[i]], first[i]);
-            }
-        }
-        for (size_t i = n - 1; i > 0; i--) {
-            size_t j = (size_t)(random_unit(&seed) * (double)i);
-            int64_t k = id[i];
-
-            id[i] = id[j];
-            id[j] = k;
-            for (int a = 0; a < 2; a++) {
-                double t = o.x[a][i];
-
-                o.x[a][i] = o.x[a][j];
-                o.x[a][j] = t;
-            }
-        }
-    }
-    free(order);
-    free(id);
-    free(first);
-    cloud_free(&o);
-}
-
-/* Any edge, any cloud: outliers, coincident points, one cell or far too many. */
-static void orders_anything(void **state)
-{
-    static const double edge[] = {1e-300, 1e-12, 0.01, 1, 1e300, 0, -1, NAN};
-    struct error e;
-
-    (void)state;
-    for (int dim = 1; dim <= 3; dim++) {
-        struct owned o = cloud_clustered(dim, 3000, 100, 2);
-        uint32_t *order = malloc(o.c.n * sizeof *order);
-
-        for (size_t i = 0; i < o.c.n; i++) {
-            if (i % 3 == 0) {
-                o.x[0][i] = 0.5;
-            }
-            if (i % 500 == 1) {
-                o.x[dim - 1][i] = pow(10, (double)(i / 20));
-            }
-        }
-        for (size_t k = 0; k < sizeof edge / sizeof edge[0]; k++) {
-            assert_int_equal(cell_order(&o.c, NULL, edge[k], order, &e), 0);
-            check_permutation(order, o.c.n);
-        }
-        o.c.n = 0;
-        assert_int_equal(cell_order(&o.c, NULL, 1, order, &e), 0);
-        free(order);
-        cloud_free(&o);
-    }
-}
-
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -739,9 +496,6 @@ int main(void)
         cmocka_unit_test(threads_make_no_difference),
         cmocka_unit_test(work_is_bounded),
         cmocka_unit_test(refuses),
-        cmocka_unit_test(orders_by_cells),
-        cmocka_unit_test(order_follows_the_id),
-        cmocka_unit_test(orders_anything),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

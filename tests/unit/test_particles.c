@@ -73,7 +73,8 @@ static void adds_once(void **state)
     assert_int_equal(p.n_column, 2);
     assert_int_equal(particles_find(&p, "n"), 1);
     assert_int_equal(particles_find(&p, "nn"), -1);
-    assert_ptr_equal(particles_real(&p, "x", 2), (double *)p.column[0].data + 2 * p.column[0].plane);
+    assert_ptr_equal(particles_real(&p, "x", 2),
+                     (double *)p.column[0].data + 2 * p.column[0].plane);
     assert_null(particles_real(&p, "x", 3));
     assert_null(particles_real(&p, "n", 0));
     assert_null(particles_real(&p, "y", 0));
@@ -270,7 +271,9 @@ static void guards(void **state)
     assert_false(killed(u, true));
     /* The page behind the column is nobody's, and still the column's. */
     assert_true(killed(u + (size_t)sysconf(_SC_PAGESIZE) / 8, false));
-    assert_int_equal(particles_at_address(&p, (const void *)(uintptr_t)(u + (size_t)sysconf(_SC_PAGESIZE) / 8)), 0);
+    assert_int_equal(
+        particles_at_address(&p, (const void *)(uintptr_t)(u + (size_t)sysconf(_SC_PAGESIZE) / 8)),
+        0);
     assert_int_equal(particles_at_address(&p, (const void *)(uintptr_t)w), 1);
     /* The core may grow what the audit has closed. */
     assert_int_equal(particles_guard(&p, 0, 0), 0);
@@ -286,8 +289,8 @@ static void guards(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(knows_types), cmocka_unit_test(refuses),         cmocka_unit_test(adds_once),
-        cmocka_unit_test(views),       cmocka_unit_test(pads),            cmocka_unit_test(grows_and_keeps),
+        cmocka_unit_test(knows_types), cmocka_unit_test(refuses), cmocka_unit_test(adds_once),
+        cmocka_unit_test(views),       cmocka_unit_test(pads),    cmocka_unit_test(grows_and_keeps),
         cmocka_unit_test(permutes),    cmocka_unit_test(guards),
     };
 

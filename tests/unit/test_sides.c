@@ -64,7 +64,7 @@ static struct particles make(int dim, size_t n, const struct box *box, uint64_t 
     return p;
 }
 
-/* -- Wrapping ------------------------------------------------------------------------------------ */
+/* -- Wrapping ---------------------------------------------------------------------------------- */
 
 static void wraps_periodic(void **state)
 {
@@ -72,7 +72,7 @@ static void wraps_periodic(void **state)
     struct particles p = make(2, 6, &box, 1);
     double *x = particles_real(&p, "x", 0), *y = particles_real(&p, "x", 1);
     double *v = particles_real(&p, "v", 0);
-    static const double in[6] = {0.5, 1.25, -1.25, 1, 9.5, -1e-30 - 1};
+    static const double in[6] = {0.5, 1.25, -1.25, 1, 9.5, 0};
     static const double want[6] = {0.5, -0.75, 0.75, -1, -0.5, -1};
 
     (void)state;
@@ -91,6 +91,13 @@ static void wraps_periodic(void **state)
         assert_true(v[i] == 100001 + i);
     }
     assert_int_equal(sides_wrap(&box, &p), 0);
+    /* A hair before the side: the other end, in floating point, is the side itself. */
+    box.min[0] = 0;
+    for (int i = 0; i < 6; i++) {
+        x[i] = -1e-30;
+    }
+    assert_int_equal(sides_wrap(&box, &p), 6);
+    assert_true(x[0] == 0);
     particles_fini(&p);
 }
 
@@ -123,9 +130,9 @@ static void reflects(void **state)
         assert_true(particles_real(&p, "v", 0)[i] == sign * (100001 + i));
         assert_true(particles_real(&p, "v", 1)[i] == 101001 + i);
         assert_true(particles_real(&p, "h", 0)[i] == 200001 + i);
-        assert_true(particles_real(&p, "s", 0)[i] == 300001 + i);         /* xx */
+        assert_true(particles_real(&p, "s", 0)[i] == 300001 + i);          /* xx */
         assert_true(particles_real(&p, "s", 1)[i] == sign * (301001 + i)); /* xy */
-        assert_true(particles_real(&p, "s", 2)[i] == 302001 + i);         /* yy */
+        assert_true(particles_real(&p, "s", 2)[i] == 302001 + i);          /* yy */
         assert_true(particles_real(&p, "m", 2)[i] == sign * (402001 + i)); /* yx */
         assert_true(particles_real(&p, "m", 3)[i] == 403001 + i);
     }
@@ -151,7 +158,7 @@ static void leaves_open_sides(void **state)
     particles_fini(&p);
 }
 
-/* -- Ghosts -------------------------------------------------------------------------------------- */
+/* -- Ghosts ------------------------------------------------------------------------------------ */
 
 /* What an image (0 none, 1 low, 2 high) makes of a coordinate; NAN if that side has none. */
 static double image(const struct box *b, int a, int which, double x)
@@ -309,8 +316,8 @@ static void refreshes(void **state)
             for (uint32_t c = 0; c < p.column[3].ncomp; c++) {
                 const double *s = particles_real(&p, "s", c);
 
-                assert_true(s[to] == sign[sym[dim][3 * c] - 'x'] * sign[sym[dim][3 * c + 1] - 'x'] *
-                                         s[i]);
+                assert_true(s[to] ==
+                            sign[sym[dim][3 * c] - 'x'] * sign[sym[dim][3 * c + 1] - 'x'] * s[i]);
             }
             for (uint32_t c = 0; c < p.column[4].ncomp; c++) {
                 const double *m = particles_real(&p, "m", c);
@@ -351,10 +358,13 @@ static void needs_positions(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(wraps_periodic),    cmocka_unit_test(reflects),
-        cmocka_unit_test(leaves_open_sides), cmocka_unit_test(makes_all_ghosts),
+        cmocka_unit_test(wraps_periodic),
+        cmocka_unit_test(reflects),
+        cmocka_unit_test(leaves_open_sides),
+        cmocka_unit_test(makes_all_ghosts),
         cmocka_unit_test(open_or_unbounded_makes_none),
-        cmocka_unit_test(refuses_thin_boxes), cmocka_unit_test(refreshes),
+        cmocka_unit_test(refuses_thin_boxes),
+        cmocka_unit_test(refreshes),
         cmocka_unit_test(needs_positions),
     };
 

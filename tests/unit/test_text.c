@@ -114,15 +114,15 @@ static void checks_utf8(void **state)
         {"plain", 5, SIZE_MAX},
         {"a\0b", 3, SIZE_MAX},
         {"\xC3\xA9\xE2\x82\xAC\xF0\x9F\x98\x80", 9, SIZE_MAX},
-        {"a\x80", 2, 1},                 /* no first byte */
-        {"ab\xC3", 3, 2},                /* cut */
-        {"\xC0\xAF", 2, 0},              /* too long a form */
+        {"a\x80", 2, 1},    /* no first byte */
+        {"ab\xC3", 3, 2},   /* cut */
+        {"\xC0\xAF", 2, 0}, /* too long a form */
         {"\xE0\x80\xAF", 3, 0},
         {"\xF0\x80\x80\xAF", 4, 0},
-        {"x\xED\xA0\x80", 4, 1},         /* half a surrogate pair */
+        {"x\xED\xA0\x80", 4, 1}, /* half a surrogate pair */
         {"\xED\x9F\xBF\xEE\x80\x80", 6, SIZE_MAX},
         {"\xF4\x8F\xBF\xBF", 4, SIZE_MAX},
-        {"\xF4\x90\x80\x80", 4, 0},      /* beyond the last */
+        {"\xF4\x90\x80\x80", 4, 0}, /* beyond the last */
         {"\xF8\x88\x80\x80\x80", 5, 0},
         {"\xC3x", 2, 0},
         {"ok\xFF", 3, 2},
@@ -137,9 +137,9 @@ static void checks_utf8(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(finds_the_nearest), cmocka_unit_test(distance_is_bounded),
+        cmocka_unit_test(finds_the_nearest),   cmocka_unit_test(distance_is_bounded),
         cmocka_unit_test(survives_long_words), cmocka_unit_test(suggests),
-        cmocka_unit_test(suggestions_fit),   cmocka_unit_test(formats),
+        cmocka_unit_test(suggestions_fit),     cmocka_unit_test(formats),
         cmocka_unit_test(checks_utf8),
     };
 

@@ -1,0 +1,38 @@
+/* neighbours/worker.h -- what a thread does for neighbour lists: those of a run of groups, one
+ * after the other, in memory of its own. */
+#ifndef NEIGHBOURS_WORKER_H
+#define NEIGHBOURS_WORKER_H
+
+#include "neighbours/filter.h"
+
+#define LANES 8 /* destinations in a group */
+
+/* What all threads share. */
+struct job {
+    const struct cloud *dst;
+    const struct filter *filter;
+    struct boxes tree;
+    double scale;    /* of the destinations' reach, skin and slack included */
+    uint64_t *count; /* [n_group]: sources of each group */
+};
+
+/* What one thread owns. */
+struct worker {
+    uint32_t *out; /* lists of its chunks, one after the other */
+    size_t n_out, out_capacity;
+    uint32_t *leaf, *chosen; /* of the bundle at hand; of the group */
+    struct packed_leaf *pack;
+    struct packed_box8 *box;
+    size_t n_leaf, leaf_capacity;
+    uint64_t *bits, *summary; /* a bit a source; a bit a word of bits */
+    uint64_t candidates;
+    bool no_memory;
+    char apart[64]; /* from the next one's cache lines */
+};
+
+/* Appends the lists of groups [first, last), which must not be none, and sets their counts. What
+ * comes out depends on nothing but the job and the groups. Sets w->no_memory if it could not. */
+void worker_make(const struct job *j, struct worker *w, size_t first, size_t last);
+void worker_fini(struct worker *w);
+
+#endif

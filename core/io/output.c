@@ -9,7 +9,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
-#include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/file.h>
@@ -164,14 +164,13 @@ static bool ends_with(const char *s, const char *suffix)
     return n >= m && strcmp(s + n - m, suffix) == 0;
 }
 
-/* "snapshot_" digits ".vtkhdf" */
-static bool is_snapshot_name(const char *s)
+bool output_is_snapshot(const char *name)
 {
-    if (!starts_with(s, "snapshot_"))
+    if (!starts_with(name, "snapshot_"))
         return false;
-    s += strlen("snapshot_");
-    const size_t digits = strspn(s, "0123456789");
-    return digits > 0 && strcmp(s + digits, ".vtkhdf") == 0;
+    name += strlen("snapshot_");
+    const size_t digits = strspn(name, "0123456789");
+    return digits > 0 && strcmp(name + digits, ".vtkhdf") == 0;
 }
 
 /* Whether the file begins with `mark` (offset < 0: holds it near its beginning). */
@@ -202,7 +201,7 @@ static enum owner file_owner(int folder, const char *name)
     if (fstatat(folder, name, &s, AT_SYMLINK_NOFOLLOW))
         return NOBODY;
     const bool regular = S_ISREG(s.st_mode);
-    if (starts_with(name, ASIDE_PREFIX) || is_snapshot_name(name))
+    if (starts_with(name, ASIDE_PREFIX) || output_is_snapshot(name))
         return regular ? OURS : FOREIGN;
     if (strcmp(name, "log.csv") == 0) {
         const char mark[] = OUTPUT_LOG_MARK;
@@ -289,7 +288,10 @@ char *output_shown(const char *path)
 
 static int cannot_write(const char *path, int error_number, struct error *e)
 {
-    return error_set(e, EXIT_RUN, "cannot write %s: %s", path, strerror(error_number));
+    char *shown = output_shown(path);
+    error_set(e, EXIT_RUN, "cannot write %s: %s", shown ? shown : path, strerror(error_number));
+    free(shown);
+    return -1;
 }
 
 /* The name itself is on disk only when its folder is. Filesystems that cannot sync one say so. */
@@ -408,6 +410,7 @@ static int write_direct(const char *path, const void *data, size_t n, struct err
 int output_write_path(const char *path, const void *data, size_t n, struct error *e)
 {
     struct stat s;
+    signal(SIGXFSZ, SIG_IGN); /* as in output_claim */
     if (stat(path, &s) == 0 && !S_ISREG(s.st_mode))
         return write_direct(path, data, n, e);
     const char *slash = strrchr(path, '/');

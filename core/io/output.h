@@ -4,7 +4,8 @@
 #define IO_OUTPUT_H
 
 #include "base/error.h"
-#include <stdio.h>
+#include <stdbool.h>
+#include <stddef.h>
 
 struct output {
     char *dir;
@@ -40,6 +41,9 @@ char *output_shown(const char *path);
 /* The same for any path, claimed or not: aside in the same folder, synced, renamed. A path that is
  * there and no regular file (a device, a pipe) is written to directly. */
 int output_write_path(const char *path, const void *data, size_t n, struct error *e);
+
+/* Whether a file's name is that of a snapshot: "snapshot_", digits, ".vtkhdf". */
+bool output_is_snapshot(const char *name);
 
 /* In every PNG of ours, so that a later run knows which pictures it may remove. */
 #define OUTPUT_PNG_KEY "Software"

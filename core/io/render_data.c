@@ -11,7 +11,6 @@
 #include <string.h>
 
 #define SAMPLE ((size_t)100000)
-#define REACH 0.9 /* of a volume drawn as a ball, in units of its side: no gaps, no fat edges */
 
 /* -- The field ---------------------------------------------------------------------------------- */
 
@@ -145,7 +144,7 @@ static int extent_of(struct extent *x, const struct picture_data *d, int k, stru
             sample[n++] = at;
     }
     qsort(sample, n, sizeof *sample, compare);
-    const double low = sample[n / 200], high = sample[n - 1 - n / 200], slack = 0.15 * (high - low);
+    const double low = sample[n / 200], high = sample[n - 1 - n / 200], slack = 0.5 * (high - low);
     x->near_min = fmax(x->min, low - slack);
     x->near_max = fmin(x->max, high + slack);
     free(sample);
@@ -204,7 +203,7 @@ static int region_set(struct picture_data *d, const struct render_options *o,
 /* Whether particle i of the list can be seen. */
 static bool is_seen(const struct picture_data *d, const struct render_options *o, size_t i)
 {
-    const double *x = d->s->x + 3 * d->index[i], reach = REACH * d->size[i];
+    const double *x = d->s->x + 3 * d->index[i], reach = RENDER_REACH * d->size[i];
     if (x[0] + reach < d->min[0] || x[0] - reach > d->max[0])
         return false;
     if (d->s->dim == 1)

@@ -31,8 +31,8 @@ static void ticks_for(struct page *p, const struct picture_data *d, double width
 {
     const double low = p->log ? d->low : p->min[1], high = p->log ? d->high : p->max[1];
     ticks_make(&p->x, p->min[0], p->max[0], false, (int)(width / (5.0 * p->font)));
-    ticks_make(&p->y, low, high, p->log, (int)(height / (2.6 * p->font)));
-    ticks_make(&p->bar, d->low, d->high, d->log, (int)(fmax(height, 9 * p->font) / (2.6 * p->font)));
+    ticks_make(&p->y, low, high, p->log, (int)(height / (3.2 * p->font)));
+    ticks_make(&p->bar, d->low, d->high, d->log, (int)(fmax(height, 9 * p->font) / (3.2 * p->font)));
 }
 
 /* What stands around the plot. */

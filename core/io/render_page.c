@@ -199,7 +199,8 @@ static void draw_title(const struct page *p, const struct picture_data *d,
                        const struct render_options *o)
 {
     cairo_t *cr = p->cr;
-    const double f = p->font, y = 1.9 * f;
+    const double f = p->font, above = *p->y.factor || *p->bar.factor ? 1.9 * f : 1.1 * f;
+    const double y = fmin(p->top, p->bar_width > 0 ? p->bar_top : p->top) - above;
     const double width = cairo_image_surface_get_width(p->surface);
     char when[256], title[512];
     put_when(when, sizeof when, d, o);

@@ -8,6 +8,9 @@
 
 /* -- render_data.c: what is drawn --------------------------------------------------------------- */
 
+/* Half the gap that particles next to each other may leave, in units of their size. */
+#define RENDER_REACH 1.7
+
 struct picture_data {
     const struct snapshot *s;
     size_t n;      /* particles drawn */

@@ -115,9 +115,10 @@ void ticks_make(struct ticks *t, double low, double high, bool log, int most)
         return;
     if (log)
         log_ticks(t, low, high, most);
-    if (t->n < 2) { /* less than a decade may hold no round power */
+    /* Less than a decade may hold no round power, and a few steps no two round numbers. */
+    for (int extra = 0; t->n < 2 && extra < 5; extra++) {
         *t = (struct ticks){0};
-        linear_ticks(t, low, high, most);
+        linear_ticks(t, low, high, most + extra);
     }
 }
 

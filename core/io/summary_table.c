@@ -135,12 +135,7 @@ static void print_cost(const struct summary *s, FILE *out, int width)
         fprintf(out, "%.3g ns per pair, ", pair);
     if (!isnan(update))
         fprintf(out, "%.3g us per particle update, ", update);
-    fputs(seconds(text, sizeof text, s->cost.wall), out);
-    if (s->ranks > 1)
-        fprintf(out, ", %d ranks", s->ranks);
-    if (s->threads > 0)
-        fprintf(out, ", %d thread%s", s->threads, s->threads == 1 ? "" : "s");
-    fputs("\n", out);
+    fprintf(out, "%s\n", seconds(text, sizeof text, s->cost.wall));
     if (s->cost.peak_rss > 0) {
         label(out, width, "memory", "");
         fprintf(out, "%-*.4g  MB at most, %.4g bytes per particle in arrays\n", VALUE_WIDTH,
@@ -165,7 +160,12 @@ void summary_table(const struct summary *s, FILE *out)
     print_particles(s, out, width);
     label(out, width, "steps", "");
     snprintf(steps, sizeof steps, "%llu", (unsigned long long)s->steps);
-    fprintf(out, "%-*s  to t = %s\n", VALUE_WIDTH, steps, number(time, sizeof time, s->time));
+    fprintf(out, "%-*s  to t = %s", VALUE_WIDTH, steps, number(time, sizeof time, s->time));
+    if (s->ranks > 1)
+        fprintf(out, ", %d ranks", s->ranks);
+    if (s->threads > 0)
+        fprintf(out, ", %d thread%s", s->threads, s->threads == 1 ? "" : "s");
+    fputs("\n", out);
     print_probes(s, out, width);
     print_errors(s, out, width);
     print_drift(s, out, width);

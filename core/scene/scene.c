@@ -385,10 +385,10 @@ static int compile_head(struct scene *s, const cJSON *root, struct error *e)
 
 static int compile(struct scene *s, const cJSON *root, struct error *e)
 {
-    static const char *const keys[] = {"title",      "dimensions", "plugins",   "units",
-                                       "domain",     "materials",  "particles", "boundaries",
-                                       "scheme",     "kernel",     "time",      "limits",
-                                       "neighbours", "compare",    "probes",    "output"};
+    static const char *const keys[] = {
+        "$schema",   "title",      "dimensions", "plugins", "units",  "domain",
+        "materials", "particles",  "boundaries", "scheme",  "kernel", "time",
+        "limits",    "neighbours", "compare",    "probes",  "output"};
     if (!root->child)
         return document_fail(s->doc, root, e, "the scene is empty");
     if (json_keys(s->doc, root, keys, COUNT(keys), e) < 0 || compile_head(s, root, e) < 0 ||

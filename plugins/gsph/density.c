@@ -1,50 +1,67 @@
 /* density.c -- density summation solved together with the smoothing length: h = eta (m / rho(h))^(1/d), by
- * Newton's method from the h of the last evaluation, kept within 0.7 and 1.4 of it a sweep. */
+ * Newton's method from the h of the last evaluation, kept within 0.7 and 1.4 of it a sweep. The particle's own
+ * term is weighted so that a cubic lattice has just its density. */
 #include "gsph.h"
 #include <math.h>
+#include <sph/kernel-value.h>
 
-enum { M, H, RHO, OMEGA, BUSY };
+enum { M, H, RHO, SLOPE, BUSY };
 enum { ETA, TOLERANCE };
 
 static const sph_param params[] = {
-    {"eta", "", "smoothing length in units of (m / rho)^(1/d)", 1.3, 1.0, 4.0, NULL},
-    {"h_tolerance", "", "relative change of h at which its iteration ends", 1e-6, 1e-15, 1e-2, NULL},
+    {"eta", "", "smoothing length in units of (m / rho)^(1/d)", 1.5, 1.0, 4.0, NULL},
+    {"h_tolerance", "", "relative change of h at which its iteration ends", 1e-3, 1e-15, 1e-2, NULL},
 };
 
 static const sph_prop props[] = {
     {"m", "kg", "mass", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN},
     {"h", "m", "smoothing length", SPH_SCALAR, SPH_DST_UPDATE, NAN},
     {"rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_SUM, 0.0},
-    {"omega", "", "grad-h correction: 1 + (h / (d rho)) d rho / d h", SPH_SCALAR, SPH_DST_SUM, 0.0},
+    {"drho_dh", "kg/m^(d+1)", "derivative of the summed density with h", SPH_SCALAR, SPH_DST_SUM, 0.0},
     {"h_busy", "", "1 while the iteration of h goes on", SPH_INT32, SPH_DST_WRITE, 0.0},
 };
 
 #define SPH_LOOP sweep
 #define SPH_LOOP_J(S, V, MAT) S(m, M)
-#define SPH_LOOP_SUM(S, V, MAT) S(rho, RHO) S(omega, OMEGA)
+#define SPH_LOOP_SUM(S, V, MAT) S(rho, RHO) S(slope, SLOPE)
 #define SPH_LOOP_REACH SPH_GATHER
-#define SPH_LOOP_SELF 1
 #define SPH_LOOP_BODY "density.body.h"
 #include <sph/pair-loop.h>
 
-/* From the sums to the next h; a particle that is done keeps its h, so that its sums stay right. */
+/* The kernel at r = 0, corrected: its sum over a cubic lattice of unit spacing misses 1 by a little at this eta,
+ * and the particle's own term makes up for it (the idea of Dehnen & Aly 2012, section 2.4). */
+static double own_weight(const sph_kernel_form *kernel, double eta)
+{
+    const int n = (int)(kernel->support * eta) + 1;
+    const double scale = pow(eta, -(double)kernel->dim);
+    double others = 0.0;
+    for (int z = kernel->dim > 2 ? -n : 0; z <= (kernel->dim > 2 ? n : 0); z++)
+        for (int y = kernel->dim > 1 ? -n : 0; y <= (kernel->dim > 1 ? n : 0); y++)
+            for (int x = -n; x <= n; x++)
+                if (x || y || z)
+                    others += scale * sph_kernel_w(kernel, sqrt((double)(x * x + y * y + z * z)) / eta);
+    return (1.0 - others) / scale;
+}
+
+/* From the sums to the next h. A particle that is done keeps its h, so that its sums stay right. */
 static sph_status update(const sph_batch *b)
 {
     const double eta = b->param[ETA], tolerance = b->param[TOLERANCE], d = b->dim;
+    const double own = own_weight(b->kernel, eta);
     const double *m = gsph_plane(&b->dst[M], 0);
     double *h = gsph_plane(&b->dst[H], 0), *rho = gsph_plane(&b->dst[RHO], 0);
-    double *omega = gsph_plane(&b->dst[OMEGA], 0);
+    double *slope = gsph_plane(&b->dst[SLOPE], 0);
     int32_t *busy = b->dst[BUSY].data;
     for (uint64_t i = b->first; i < b->first + b->count; i++) {
-        double wanted = m[i] * pow(eta / h[i], d); /* the density that fits this h */
-        double slope = -d * wanted / h[i] - omega[i];
-        double next = h[i] - (wanted - rho[i]) / slope;
+        const double self = m[i] * own * pow(h[i], -d), fitting = m[i] * pow(eta / h[i], d);
+        rho[i] += self;
+        slope[i] -= d * self / h[i];
+        double next = h[i] + (fitting - rho[i]) / (d * fitting / h[i] + slope[i]);
         if (!(next > 0.7 * h[i]))
             next = 0.7 * h[i];
         if (next > 1.4 * h[i])
             next = 1.4 * h[i];
         busy[i] = fabs(next - h[i]) > tolerance * h[i];
-        omega[i] = 1.0 + h[i] / (d * rho[i]) * omega[i];
         if (busy[i])
             h[i] = next;
     }
@@ -56,7 +73,8 @@ static const sph_item item = {
     SPH_ALL_DIMS,
     "gsph-density",
     "density summation, solved together with the smoothing length",
-    "Springel & Hernquist 2002, doi:10.1046/j.1365-8711.2002.05445.x, eq. 7-8",
+    "Springel & Hernquist 2002, doi:10.1046/j.1365-8711.2002.05445.x, eq. 7; "
+    "Dehnen & Aly 2012, doi:10.1111/j.1365-2966.2012.21439.x, section 2.4",
     SPH_LIST(params),
     SPH_LIST(props),
 };

@@ -3,7 +3,13 @@
 #include "gsph.h"
 #include <math.h>
 
-enum { M, RHO, P, V, GRHO, GP, GV, MOMENT };
+enum { M, RHO, P, V, GRHO, GP, GV, MOMENT, SPREAD };
+enum { SHARE };
+
+static const sph_param params[] = {
+    {"volume_share", "",
+     "how much of the gradients' volume correction the forces take: 0 none, 1 all", 0.4, 0.0, 1.0, NULL},
+};
 
 static const sph_prop props[] = {
     {"m", "kg", "mass", SPH_SCALAR, SPH_SRC_READ, NAN},
@@ -15,12 +21,14 @@ static const sph_prop props[] = {
     {"grad_v", "1/s", "gradient of the velocity: row c is that of component c", SPH_MATRIX, SPH_DST_SUM,
      0.0},
     {"moment", "", "moment matrix of the gradients", SPH_MATRIX, SPH_DST_SUM, 0.0},
+    {"volume", "", "volume correction of the forces", SPH_SCALAR, SPH_DST_SUM, 0.0},
 };
 
 #define SPH_LOOP sweep
 #define SPH_LOOP_I(S, V_, M_) S(rho, RHO) S(p, P) V_(v, V)
 #define SPH_LOOP_J(S, V_, M_) S(m, M) S(rho, RHO) S(p, P) V_(v, V)
-#define SPH_LOOP_SUM(S, V_, M_) V_(grho, GRHO) V_(gp, GP) M_(gv, GV) M_(moment, MOMENT)
+#define SPH_LOOP_SUM(S, V_, M_)                                                                    \
+    V_(grho, GRHO) V_(gp, GP) M_(gv, GV) M_(moment, MOMENT) S(spread, SPREAD)
 #define SPH_LOOP_REACH SPH_GATHER
 #define SPH_LOOP_BODY "gradients.body.h"
 #include <sph/pair-loop.h>
@@ -68,10 +76,17 @@ static void multiply(const sph_column *column, uint32_t first, uint64_t i, uint3
 static sph_status correct(const sph_batch *b)
 {
     const uint32_t d = b->dim;
+    const double *rho = gsph_plane(&b->dst[RHO], 0);
     for (uint64_t i = b->first; i < b->first + b->count; i++) {
         double moment[9], inverse[9];
         for (uint32_t k = 0; k < d * d; k++)
             moment[k] = gsph_plane(&b->dst[MOMENT], k)[i];
+        double trace = 0.0;
+        for (uint32_t k = 0; k < d; k++)
+            trace += moment[k * d + k];
+        /* Both are sums of -r w'(q): one over the neighbours' volumes, one over the particle's own. */
+        double *volume = gsph_plane(&b->dst[SPREAD], 0) + i;
+        *volume = trace > 0.0 ? 1.0 + b->param[SHARE] * (*volume / (rho[i] * trace) - 1.0) : 1.0;
         invert(d, moment, inverse);
         multiply(&b->dst[GRHO], 0, i, d, inverse);
         multiply(&b->dst[GP], 0, i, d, inverse);
@@ -88,7 +103,7 @@ static const sph_item item = {
     "gradients of density, pressure and velocity for the reconstruction",
     "exact for linear fields by matrix inversion, as Garcia-Senz et al. 2012, "
     "doi:10.1051/0004-6361/201117939, eq. 5-7",
-    SPH_NO_LIST,
+    SPH_LIST(params),
     SPH_LIST(props),
 };
 

@@ -20,7 +20,7 @@ static const sph_item item = {
 };
 
 static const sph_scheme scheme = {
-    SIZE(sph_scheme), 0, &item, "wendland-c4", "kdk", 0.25, SPH_LIST(steps), SPH_LIST(rates),
+    SIZE(sph_scheme), 0, &item, "wendland-c4", "kdk", 0.3, SPH_LIST(steps), SPH_LIST(rates),
 };
 
 static sph_status init(const sph_host *host)

@@ -21,17 +21,19 @@ for (int a = 0; a < DIM; a++) {
 const R closing = u_l - u_r; /* > 0: the two approach */
 const R signal = cs_i + cs_j + beta * sph_max(closing, sph_num(0.0));
 
-/* Limited increments over the pair, half of each from either side. */
+/* Limited increments over the pair, half of each from either side; none may be larger than the smaller of the
+ * two values (of the velocity: than some speeds of sound), so that the states stay positive. */
 R rho_l = rho_j, rho_r = rho_i, p_l = p_j, p_r = p_i;
 if (limiter > 0.5) {
     const R rho_step = rho_i - rho_j, p_step = p_i - p_j, u_step = -closing;
-    rho_l = rho_j + 0.5 * GSPH_LIMIT(rho_step, drho_l);
-    rho_r = rho_i - 0.5 * GSPH_LIMIT(rho_step, drho_r);
-    p_l = p_j + 0.5 * GSPH_LIMIT(p_step, dp_l);
-    p_r = p_i - 0.5 * GSPH_LIMIT(p_step, dp_r);
-    const R u_l0 = u_l, u_r0 = u_r;
-    u_l = u_l0 + 0.5 * GSPH_LIMIT(u_step, du_l);
-    u_r = u_r0 - 0.5 * GSPH_LIMIT(u_step, du_r);
+    const R rho_cap = sph_min(rho_i, rho_j), p_cap = sph_min(p_i, p_j);
+    const R u_cap = GSPH_MOST_SOUND * sph_min(cs_i, cs_j);
+    rho_l += 0.5 * GSPH_LIMIT(rho_step, drho_l, rho_cap);
+    rho_r -= 0.5 * GSPH_LIMIT(rho_step, drho_r, rho_cap);
+    p_l += 0.5 * GSPH_LIMIT(p_step, dp_l, p_cap);
+    p_r -= 0.5 * GSPH_LIMIT(p_step, dp_r, p_cap);
+    u_l += 0.5 * GSPH_LIMIT(u_step, du_l, u_cap);
+    u_r -= 0.5 * GSPH_LIMIT(u_step, du_r, u_cap);
 }
 const R gamma_l = rho_j * cs_j * cs_j / p_j, gamma_r = rho_i * cs_i * cs_i / p_i;
 const R c_l = sph_sqrt(gamma_l * p_l / rho_l), c_r = sph_sqrt(gamma_r * p_r / rho_r);
@@ -52,10 +54,10 @@ for (int k = 0; k < 2; k++) {
 p_star = sph_max(p_star, sph_num(0.0));
 #include "exact.body.h"
 
-/* Grad-h form of the pair force. */
+/* The force of the pair: geometric mean of the volumes, corrected. */
 const R dw_i = sph_dw(K, r * hinv_i) * sph_ipow(hinv_i, DIM + 1);
 const R dw_j = sph_dw(K, r * hinv_j) * sph_ipow(hinv_j, DIM + 1);
-const R flux = -m_j * p_star * (dw_i / (rho_i * rho_i * omega_i) + dw_j / (rho_j * rho_j * omega_j));
+const R flux = -m_j * p_star * (volume_i * dw_i + volume_j * dw_j) / (rho_i * rho_j);
 for (int a = 0; a < DIM; a++)
     sph_add(force[a], flux * e[a]);
 sph_add(power, flux * u_star);

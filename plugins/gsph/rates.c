@@ -4,12 +4,12 @@
 #include "gsph.h"
 #include <math.h>
 
-enum { M, RHO, P, CS, V, OMEGA, GRHO, GP, GV, FORCE, POWER, FASTEST, A, DU, U, DT };
+enum { M, RHO, P, CS, V, VOLUME, GRHO, GP, GV, FORCE, POWER, FASTEST, A, DU, U, DT };
 enum { RIEMANN, LIMITER, BETA };
 
 static const sph_param params[] = {
     {"riemann", "", "Riemann solver", 1.0, 1.0, 0.0, "exact|hllc"},
-    {"limiter", "", "slope limiter; none: first order", 2.0, 1.0, 0.0, "none|minmod|van-leer"},
+    {"limiter", "", "slope limiter; none: first order", 1.0, 1.0, 0.0, "none|minmod|van-leer"},
     {"beta", "", "weight of the closing speed in the signal speed that bounds the time step", 1.0, 0.0, 10.0,
      NULL},
 };
@@ -20,7 +20,7 @@ static const sph_prop props[] = {
     {"p", "J/m^d", "pressure", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN},
     {"cs", "m/s", "speed of sound", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN},
     {"v", "m/s", "velocity", SPH_VECTOR, SPH_DST_READ | SPH_SRC_READ, 0.0},
-    {"omega", "", "grad-h correction", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN},
+    {"volume", "", "volume correction of the forces", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN},
     {"grad_rho", "kg/m^(d+1)", "gradient of the density", SPH_VECTOR, SPH_DST_READ | SPH_SRC_READ, NAN},
     {"grad_p", "J/m^(d+1)", "gradient of the pressure", SPH_VECTOR, SPH_DST_READ | SPH_SRC_READ, NAN},
     {"grad_v", "1/s", "gradient of the velocity", SPH_MATRIX, SPH_DST_READ | SPH_SRC_READ, NAN},
@@ -33,19 +33,26 @@ static const sph_prop props[] = {
     {"dt", "s", "time step that the particle allows, before cfl", SPH_SCALAR, SPH_DST_WRITE, 0.0},
 };
 
-/* The limited increment of a quantity from j to i, from its step over the pair and what one side's gradient
- * gives for it: b is the step beyond, seen from that side. */
-#define GSPH_LIMIT(step, slope)                                                                    \
-    (limiter < 1.5 ? GSPH_MINMOD((step), (2.0 * (slope) - (step)))                                 \
-                   : GSPH_VAN_LEER((step), (2.0 * (slope) - (step))))
+/* The limited increment of a quantity from j to i, from its step over the pair and what one side's gradient gives
+ * for it. minmod: the smaller of the two. van-leer: harmonic mean of the step and of the one beyond that
+ * the gradient tells of. cap: most that it may be. */
+#define GSPH_LIMIT(step, slope, cap)                                                               \
+    sph_max(sph_min(limiter < 1.5 ? GSPH_MINMOD(step, slope)                                       \
+                                  : GSPH_VAN_LEER(step, (2.0 * (slope) - (step))),                 \
+                    cap),                                                                          \
+            -(cap))
 #define GSPH_MINMOD(a, b)                                                                          \
     sph_select((a) * (b) > sph_num(0.0), sph_select(sph_abs(a) < sph_abs(b), (a), (b)), sph_num(0.0))
 #define GSPH_VAN_LEER(a, b)                                                                        \
     sph_select((a) * (b) > sph_num(0.0), 2.0 * (a) * (b) / ((a) + (b)), sph_num(0.0))
+/* Most speeds of sound that the velocity may be changed by. */
+#define GSPH_MOST_SOUND 5.0
+/* Iterations of the exact solver: p* to 1e-9 where no near-vacuum opens. */
+#define GSPH_NEWTON 6
 
 #define SPH_LOOP sweep
 #define SPH_LOOP_I(S, V_, M_)                                                                      \
-    S(rho, RHO) S(p, P) S(cs, CS) V_(v, V) S(omega, OMEGA) V_(grho, GRHO) V_(gp, GP) M_(gv, GV)
+    S(rho, RHO) S(p, P) S(cs, CS) V_(v, V) S(volume, VOLUME) V_(grho, GRHO) V_(gp, GP) M_(gv, GV)
 #define SPH_LOOP_J(S, V_, M_) S(m, M) SPH_LOOP_I(S, V_, M_)
 #define SPH_LOOP_SUM(S, V_, M_) V_(force, FORCE) S(power, POWER)
 #define SPH_LOOP_MAX(S) S(fastest, FASTEST)

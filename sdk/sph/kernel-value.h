@@ -1,0 +1,37 @@
+/* sph/kernel-value.h -- a kernel's value and slope for one number at a time, for what a plugin does once in a while;
+ * pair bodies use sph_w and sph_dw (lanes.h). */
+#ifndef SPH_KERNEL_VALUE_H
+#define SPH_KERNEL_VALUE_H
+
+#include <sph/batch.h>
+
+/* One of the two sums of a kernel form, at q = r / h, in units of h^-dim (w) or h^-(dim+1) (dw). */
+static inline double sph_kernel_sum(const sph_kernel_form *kernel, double q, int slope)
+{
+    double sum = 0.0;
+    for (uint32_t k = 0; k < kernel->n_pieces; k++) {
+        const sph_kernel_piece *p = &kernel->piece[k];
+        const double *c = slope ? p->d : p->c;
+        double t = p->knot - q, value = 0.0;
+        if (!(t > 0.0))
+            continue;
+        for (uint32_t n = slope ? p->dn_coef : p->n_coef; n-- > 0;)
+            value = value * t + c[n];
+        for (uint32_t n = slope ? p->dpower : p->power; n-- > 0;)
+            value *= t;
+        sum += value;
+    }
+    return sum * kernel->norm;
+}
+
+static inline double sph_kernel_w(const sph_kernel_form *kernel, double q)
+{
+    return sph_kernel_sum(kernel, q, 0);
+}
+
+static inline double sph_kernel_dw(const sph_kernel_form *kernel, double q)
+{
+    return sph_kernel_sum(kernel, q, 1);
+}
+
+#endif

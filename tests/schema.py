@@ -1,0 +1,178 @@
+#!/usr/bin/env python3
+"""examples/scene.schema.json against every example, against scenes that are wrong, and against the keys
+that core/scene knows: whoever adds a key to one must add it to the other."""
+import copy
+import glob
+import json
+import os
+import re
+import sys
+
+try:
+    import jsonschema
+except ImportError:
+    print("no jsonschema (Debian: python3-jsonschema)")
+    sys.exit(77)
+
+top = os.environ.get("top_srcdir") or os.path.join(os.path.dirname(os.path.abspath(__file__)), "..")
+
+with open(os.path.join(top, "examples/scene.schema.json"), encoding="utf-8") as file:
+    schema = json.load(file)
+jsonschema.Draft7Validator.check_schema(schema)
+validator = jsonschema.Draft7Validator(schema)
+failures = 0
+
+
+def check(good, what):
+    global failures
+    if not good:
+        failures += 1
+        print("FAILED:", what)
+
+
+# Every example is a scene.
+examples = [p for p in sorted(glob.glob(os.path.join(top, "examples/*.json")))
+            if not p.endswith(".schema.json")]
+check(len(examples) >= 5, "examples are found")
+for path in examples:
+    with open(path, encoding="utf-8") as file:
+        scene = json.load(file)
+    for error in validator.iter_errors(scene):
+        check(False, f"{path}: /{'/'.join(map(str, error.absolute_path))}: {error.message}")
+
+# A scene with everything in it, and what makes it wrong.
+whole = {
+    "//": "why",
+    "title": "T", "dimensions": 2, "plugins": ["a"], "units": "SI",
+    "domain": {"min": [0, 0], "max": [1, 1], "sides": {"x": "periodic", "y": ["mirror", "open"]}},
+    "materials": {"gas": {"eos": {"name": "some", "gamma": 1.4}}, "water": {"eos": "stiff"}},
+    "particles": {
+        "fluid": {
+            "material": "gas", "h_over_dx": 1.5,
+            "fill": [
+                {"lattice": "square", "spacing": 0.1, "jitter": 0.2, "seed": 7, "fields": {"u": 2},
+                 "in": {"difference": [{"box": {"min": [0, 0], "max": [1, 1]}},
+                                       {"sphere": {"center": [0, 0], "radius": 1}}]}},
+                {"glass": {"sweeps": 5, "noise": 0.1}, "count": 100},
+                {"file": "a.csv", "rename": {"X": "x"}, "spacing": 0.1}],
+            "fields": {"rho": 1, "v": ["-x/r", 0]},
+            "columns": {"label": {"type": "int32", "value": "x > 0"}, "tracer": 1, "drift": [0, 1]}}},
+    "boundaries": [{"name": "b", "on": "wall"}],
+    "scheme": {"name": "s", "alpha": 1, "edit": [
+        {"insert": "f", "before": "g", "alpha": 2}, {"delete": "d"}, {"replace": "r", "with": "w"},
+        {"operation": "summation", "function": "f", "of": "rho", "to": ["fluid"], "at": "finish"},
+        {"operation": "assignment", "of": "label", "expression": "x > 0", "after": "g"}]},
+    "kernel": {"name": "k"}, "limits": {"particles": 1000}, "neighbours": {"skin": 0.2},
+    "time": {"integrator": "kdk", "begin": 0, "end": 2, "cfl": 0.3, "dt_max": 0.1, "steps": 9},
+    "compare": [{"array": "fluid", "exact": "e", "where": "r < 1", "fields": ["rho"], "gamma": 1.4}],
+    "probes": [{"name": "a", "array": "fluid", "mean": "rho", "expected": 16},
+               {"name": "b", "array": "fluid", "crossing": {"of": "rho", "shell": 0.1, "level": 1}}],
+    "output": {"every": 0.1, "log": {"steps": 10}, "picture": {"field": "rho", "min": 0, "max": 1}},
+}
+for error in validator.iter_errors(whole):
+    check(False, f"the whole scene: /{'/'.join(map(str, error.absolute_path))}: {error.message}")
+
+ABSENT = object()
+wrong = [
+    ("titel", "T"), ("dimensions", ABSENT), ("dimensions", 4), ("dimensions", "2"),
+    ("units", "metric"), ("particles", {}), ("particles", ABSENT), ("scheme", ABSENT), ("time", {}),
+    ("time.end", "soon"), ("time.ende", 1), ("time.cfl", 0), ("domain.min", 0),
+    ("domain.sides.x", "perodic"), ("domain.sides.y", ["open"]), ("domain.sides.w", "open"),
+    ("materials.gas.eos", {"gamma": 1.4}), ("materials.gas.eso", 1), ("particles.fluid.fill", ABSENT),
+    ("particles.fluid.fill", []), ("particles.fluid.fill.0.spacing", -0.1),
+    ("particles.fluid.fill.0.spacing", "fine"), ("particles.fluid.fill.0.count", 5),
+    ("particles.fluid.fill.0.lattice", "sqare"), ("particles.fluid.fill.0.glass", {}),
+    ("particles.fluid.fill.0.jitter", 3), ("particles.fluid.fill.1.jitter", 0.1),
+    ("particles.fluid.fill.1.glass.sweeps", 0), ("particles.fluid.fill.0.in", {"bax": {}}),
+    ("particles.fluid.fill.0.in.difference", []), ("particles.fluid.fields.rho", True),
+    ("particles.fluid.fields.rho", ""), ("particles.fluid.columns.label.type", "int"),
+    ("particles.fluid.h_over_dx", 0), ("boundaries", [{}]), ("scheme.edit.0.delete", "x"),
+    ("scheme.edit.3.operation", "sum"), ("scheme.edit.3.at", "end"), ("scheme.edit.0.after", "x"),
+    ("scheme.alpha", [1]), ("kernel.name", 1), ("limits.particles", 0), ("neighbours.skin", -1),
+    ("compare.0.exact", ABSENT), ("probes.0.min", "rho"), ("probes.0.mean", ABSENT),
+    ("probes.1.crossing.shell", 0), ("output.every", 0), ("output.log.every", 1),
+    ("output.picture.max", ABSENT), ("output.picture.map", "blue"), ("output.checkpiont", {}),
+]
+for path, value in wrong:
+    scene = copy.deepcopy(whole)
+    *way, last = [int(p) if p.isdigit() else p for p in path.split(".")]
+    at = scene
+    for step in way:
+        at = at[step]
+    if value is ABSENT:
+        del at[last]
+    else:
+        at[last] = value
+    check(not validator.is_valid(scene), f"taken: {path} = {value!r}")
+
+# The keys of the program: arrays of texts called ...keys, by the function that they stand in.
+known = {}
+for path in sorted(glob.glob(os.path.join(top, "core/scene/sc*.c")) + [os.path.join(top, "core/scene/shape.c")]):
+    function = ""
+    with open(path, encoding="utf-8") as file:
+        text = file.read()
+    for match in re.finditer(r"^(?:static )?int (\w+)\(|(\w*keys)\[\] = \{([^}]*)\}", text, re.M):
+        if match[1]:
+            function = match[1]
+        else:
+            name = f"{os.path.basename(path)}:{function}:{match[2]}"
+            known[name] = set(re.findall(r'"([^"]+)"', match[3]))
+
+definitions = schema["definitions"]
+
+
+def keys(*way):
+    at = schema
+    for step in way:
+        at = at[step]
+    return set(at["properties"])
+
+
+def definition(name, *way):
+    return keys("definitions", name, *way)
+
+
+fills = definition("lattice") | definition("glass") | definition("file")
+expected = {
+    "scene.c:compile:keys": keys(),
+    "scene.c:compile_domain:keys": definition("domain"),
+    "scene.c:compile_material:keys": definition("material"),
+    "scene.c:compile_material:eos_keys": definition("named"),
+    "scene.c:compile_limits:keys": keys("properties", "limits"),
+    "scene.c:compile_kernel:keys": keys("properties", "kernel", "anyOf", 1),
+    "scene.c:compile_neighbours:keys": keys("properties", "neighbours"),
+    "scene_particles.c:compile_array:keys": definition("array"),
+    "scene_particles.c:compile_column:keys": definition("column", "anyOf", 1),
+    "scene_fill.c:scene_fill:lattice_keys": definition("lattice"),
+    "scene_fill.c:scene_fill:glass_keys": definition("glass"),
+    "scene_fill.c:scene_fill:file_keys": definition("file"),
+    "scene_fill.c:scene_fill:all_keys": fills,
+    "scene_fill.c:compile_glass:keys": definition("glass", "properties", "glass"),
+    "scene_scheme.c::edit_keys": definition("edit"),
+    "scene_scheme.c:compile_verb:keys": {"delete"},
+    "scene_scheme.c:scene_scheme:keys": definition("scheme", "anyOf", 1),
+    "scene_output.c:scene_time:keys": definition("time"),
+    "scene_output.c:scene_compares:keys": definition("compare"),
+    "scene_output.c:compile_crossing:keys": definition("probe", "properties", "crossing"),
+    "scene_output.c:compile_probe:keys": definition("probe"),
+    "scene_output.c:compile_log:keys": definition("output", "properties", "log"),
+    "scene_output.c:compile_picture:keys": definition("picture"),
+    "scene_output.c:scene_output:keys": definition("output"),
+    "shape.c:compile_box:keys": definition("shape", "properties", "box"),
+    "shape.c:compile_sphere:keys": definition("shape", "properties", "sphere"),
+    "shape.c:compile_cylinder:keys": definition("shape", "properties", "cylinder"),
+    "shape.c:compile_half_space:keys": definition("shape", "properties", "half-space"),
+}
+for name, found in known.items():
+    if name not in expected:
+        check(False, f"{name}: which part of the schema is this? tests/schema.py does not know")
+    else:
+        check(found == expected[name],
+              f"{name}: only the program knows {sorted(found - expected[name])}, "
+              f"only the schema {sorted(expected[name] - found)}")
+for name, wanted in expected.items():
+    if name not in known:
+        check(False, f"{name}: not found in core/scene")
+
+print(f"{len(examples)} examples, {len(wrong)} wrong scenes, {len(known)} sets of keys")
+sys.exit(1 if failures else 0)

@@ -16,8 +16,11 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 int cli_check(int argc, char **argv)
 {
     static const struct argp argp = {
-        .parser = parse, .children = children, .args_doc = "SCENE.json",
-        .doc = "Checks a scene: errors are told by file, line and column. Particles are made, nothing is run."};
+        .parser = parse,
+        .children = children,
+        .args_doc = "SCENE.json",
+        .doc =
+            "Checks a scene: errors are told by file, line and column. Particles are made, nothing is run."};
     struct scene_options o = {0};
     struct loaded l;
     struct error e = {0};
@@ -28,7 +31,8 @@ int cli_check(int argc, char **argv)
         status = plan_fill(&l.plan, &e);
     if (!status)
         for (size_t a = 0; a < l.plan.n_array; a++)
-            printf("%s: %zu particles of \"%s\"\n", o.path, l.plan.array[a].p.n, l.plan.array[a].p.name);
+            printf("%s: %zu particles of \"%s\"\n", o.path, l.plan.array[a].p.n,
+                   l.plan.array[a].p.name);
     loaded_free(&l);
     return status ? cli_error(&e) : EXIT_DONE;
 }

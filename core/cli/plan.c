@@ -31,9 +31,13 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 int cli_plan(int argc, char **argv)
 {
     static const struct argp argp = {
-        .options = options, .parser = parse, .children = children, .args_doc = "SCENE.json",
-        .doc = "Shows what a scene would model: arrays, bytes per particle, passes with what they read "
-               "and write, exchanges, expected pairs. Nothing is run."};
+        .options = options,
+        .parser = parse,
+        .children = children,
+        .args_doc = "SCENE.json",
+        .doc =
+            "Shows what a scene would model: arrays, bytes per particle, passes with what they read "
+            "and write, exchanges, expected pairs. Nothing is run."};
     struct arguments a = {0};
     struct loaded l;
     struct error e = {0};

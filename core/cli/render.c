@@ -21,7 +21,17 @@ struct arguments {
     struct render_options render;
 };
 
-enum key { KEY_ARRAY = 256, KEY_MIN, KEY_MAX, KEY_LOG, KEY_MAP, KEY_SLICE, KEY_REGION, KEY_SIZE, KEY_ALL };
+enum key {
+    KEY_ARRAY = 256,
+    KEY_MIN,
+    KEY_MAX,
+    KEY_LOG,
+    KEY_MAP,
+    KEY_SLICE,
+    KEY_REGION,
+    KEY_SIZE,
+    KEY_ALL
+};
 
 static const struct argp_option options[] = {
     {"field", 'f', "FIELD", 0,
@@ -149,7 +159,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     return 0;
 }
 
-/* -- Which snapshots ---------------------------------------------------------------------------- */
+/* -- Which snapshots --------------------------------------------------------------------------- */
 
 static bool is_folder(const char *path)
 {
@@ -237,7 +247,8 @@ int cli_render(int argc, char **argv)
     if (!is_folder(a.path))
         result = render_one(a.path, &a, &e);
     else if (a.all && a.out && !is_folder(a.out))
-        result = error_set(&e, EXIT_USAGE, "--all wants a folder for its pictures, and %s is none", a.out);
+        result = error_set(&e, EXIT_USAGE, "--all wants a folder for its pictures, and %s is none",
+                           a.out);
     else
         result = render_folder(&a, &e);
     return result ? cli_error(&e) : EXIT_DONE;

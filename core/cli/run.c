@@ -12,17 +12,30 @@
 
 static const struct argp_child children[] = {{&scene_argp, 0, NULL, 0}, {0}};
 
-enum { KEY_OUT = 'o', KEY_THREADS = 't', KEY_QUIET = 'q', KEY_VERBOSE = 'v', KEY_UNTIL = 256, KEY_STEPS,
-       KEY_DEVICE, KEY_PRECISION, KEY_DRY, KEY_AUDIT, KEY_STRICT };
+enum {
+    KEY_OUT = 'o',
+    KEY_THREADS = 't',
+    KEY_QUIET = 'q',
+    KEY_VERBOSE = 'v',
+    KEY_UNTIL = 256,
+    KEY_STEPS,
+    KEY_DEVICE,
+    KEY_PRECISION,
+    KEY_DRY,
+    KEY_AUDIT,
+    KEY_STRICT
+};
 
 static const struct argp_option options[] = {
     {"out", KEY_OUT, "DIR", 0, "Folder for the results (default: the scene's name, here)", 0},
-    {"threads", KEY_THREADS, "N", 0, "Threads (default: the processors there are); the results are the same", 0},
+    {"threads", KEY_THREADS, "N", 0,
+     "Threads (default: the processors there are); the results are the same", 0},
     {"until", KEY_UNTIL, "T", 0, "End at time T instead of the scene's", 0},
     {"steps", KEY_STEPS, "N", 0, "End after N steps", 0},
     {"device", KEY_DEVICE, "cpu", 0, "Where to compute; this version: cpu", 0},
     {"precision", KEY_PRECISION, "double", 0, "Of the pair arithmetic; this version: double", 0},
-    {"dry-run", KEY_DRY, NULL, 0, "Do everything but the steps: check, make the particles, show the plan", 0},
+    {"dry-run", KEY_DRY, NULL, 0,
+     "Do everything but the steps: check, make the particles, show the plan", 0},
     {"strict", KEY_STRICT, NULL, 0, "Fix the order of every sum (so it is in this version)", 0},
     {"audit", KEY_AUDIT, NULL, 0, "Prove that passes touch only what they declare (slow)", 0},
     {"quiet", KEY_QUIET, NULL, 0, "No progress, no table", 0},
@@ -39,13 +52,14 @@ struct arguments {
     bool dry, audit, quiet, verbose;
 };
 
-static double number(struct argp_state *state, const char *option, const char *text, double min, bool whole)
+static double number(struct argp_state *state, const char *option, const char *text, double min,
+                     bool whole)
 {
     char *end;
     errno = 0;
     double value = strtod(text, &end);
-    if (end == text || *end || errno || !isfinite(value) || value < min || (whole && value > 9e15) ||
-        (whole && floor(value) < value))
+    if (end == text || *end || errno || !isfinite(value) || value < min ||
+        (whole && value > 9e15) || (whole && floor(value) < value))
         argp_error(state, "--%s: \"%s\" is no %s of at least %g", option, text,
                    whole ? "whole number" : "number", min);
     return value;
@@ -54,7 +68,8 @@ static double number(struct argp_state *state, const char *option, const char *t
 static void only(struct argp_state *state, const char *option, const char *text, const char *here)
 {
     if (strcmp(text, here) != 0)
-        argp_error(state, "--%s %s is not available in this version; it has: %s", option, text, here);
+        argp_error(state, "--%s %s is not available in this version; it has: %s", option, text,
+                   here);
 }
 
 static error_t parse(int key, char *arg, struct argp_state *state)
@@ -127,12 +142,18 @@ static int run(const struct arguments *a, struct loaded *l, struct error *e)
     char folder[512];
     struct output out;
     default_out(a->scene.path, folder, sizeof folder);
-    struct loop_options o = {.scene_path = a->scene.path, .until = a->until, .steps = a->steps,
-                             .progress = !a->quiet, .table = !a->quiet, .audit = a->audit,
-                             .threads = a->threads, .stop = &interrupted};
+    struct loop_options o = {.scene_path = a->scene.path,
+                             .until = a->until,
+                             .steps = a->steps,
+                             .progress = !a->quiet,
+                             .table = !a->quiet,
+                             .audit = a->audit,
+                             .threads = a->threads,
+                             .stop = &interrupted};
     double end = isnan(a->until) ? l->scene.time.end : a->until;
     if (!(end >= l->scene.time.begin))
-        return error_set(e, EXIT_USAGE, "--until %g lies before the scene's begin, %g", end, l->scene.time.begin);
+        return error_set(e, EXIT_USAGE, "--until %g lies before the scene's begin, %g", end,
+                         l->scene.time.begin);
     if (output_open(&out, a->out ? a->out : folder, e))
         return -1;
     signal(SIGINT, interrupt);
@@ -162,11 +183,15 @@ static int run_or_show(const struct arguments *a, struct error *e)
 int cli_run(int argc, char **argv)
 {
     static const struct argp argp = {
-        .options = options, .parser = parse, .children = children, .args_doc = "SCENE.json",
-        .doc = "Runs a scene. The folder of results holds snapshots (snapshot_NNNN.vtkhdf: open them in "
-               "ParaView), log.csv and summary.json.\v"
-               "Exit status: 0 done; 1 the run failed, the last good state is kept; 2 the command line or the "
-               "scene is wrong; 3 a plugin is refused."};
+        .options = options,
+        .parser = parse,
+        .children = children,
+        .args_doc = "SCENE.json",
+        .doc =
+            "Runs a scene. The folder of results holds snapshots (snapshot_NNNN.vtkhdf: open them in "
+            "ParaView), log.csv and summary.json.\v"
+            "Exit status: 0 done; 1 the run failed, the last good state is kept; 2 the command line or the "
+            "scene is wrong; 3 a plugin is refused."};
     struct arguments a = {.threads = omp_get_num_procs(), .until = NAN, .steps = UINT64_MAX};
     struct error e = {0};
     argp_err_exit_status = EXIT_USAGE;

@@ -4,8 +4,10 @@
 enum { KEY_LOAD = 'l', KEY_SET = 's' };
 
 static const struct argp_option options[] = {
-    {"load", KEY_LOAD, "PLUGIN", 0, "Load a plugin, by name or path, besides those the scene names", 0},
-    {"set", KEY_SET, "PATH=VALUE", 0, "Change the scene: --set time.end=0.1 --set scheme.name=NAME", 0},
+    {"load", KEY_LOAD, "PLUGIN", 0, "Load a plugin, by name or path, besides those the scene names",
+     0},
+    {"set", KEY_SET, "PATH=VALUE", 0, "Change the scene: --set time.end=0.1 --set scheme.name=NAME",
+     0},
     {0},
 };
 

@@ -7,9 +7,9 @@
 #include <argp.h>
 
 struct scene_options {
-    const char *path;       /* of the scene */
-    const char *load[64];   /* --load */
-    const char *set[64];    /* --set */
+    const char *path;     /* of the scene */
+    const char *load[64]; /* --load */
+    const char *set[64];  /* --set */
     size_t n_load, n_set;
 };
 

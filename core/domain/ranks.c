@@ -23,7 +23,8 @@ int ranks_begin(int *argc, char ***argv, struct error *e)
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
     if (size > 1)
         return error_set(e, EXIT_USAGE,
-                         "rank %d: this version runs on one rank, not on %d; use --threads", rank, size);
+                         "rank %d: this version runs on one rank, not on %d; use --threads", rank,
+                         size);
     return 0;
 }
 
@@ -46,8 +47,6 @@ int ranks_begin(int *argc, char ***argv, struct error *e)
     return 0;
 }
 
-void ranks_end(void)
-{
-}
+void ranks_end(void) {}
 
 #endif

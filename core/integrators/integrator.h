@@ -8,14 +8,14 @@
 #include <stdint.h>
 
 enum op_kind {
-    OP_KICK,        /* y += a dt r */
-    OP_DRIFT,       /* x += a dt v */
-    OP_SAVE_STATE,  /* y0 = y, x0 = x */
-    OP_SAVE_RATES,  /* r0 = r of the kicked */
-    OP_CORRECT,     /* y += a dt (r - r0) */
+    OP_KICK,         /* y += a dt r */
+    OP_DRIFT,        /* x += a dt v */
+    OP_SAVE_STATE,   /* y0 = y, x0 = x */
+    OP_SAVE_RATES,   /* r0 = r of the kicked */
+    OP_CORRECT,      /* y += a dt (r - r0) */
     OP_FINISH_DRIFT, /* x = x0 + a dt v */
-    OP_FINISH_KICK, /* y = y0 + a dt r */
-    OP_EVALUATE     /* all evaluate passes, at time t + a dt */
+    OP_FINISH_KICK,  /* y = y0 + a dt r */
+    OP_EVALUATE      /* all evaluate passes, at time t + a dt */
 };
 
 struct op {
@@ -25,7 +25,7 @@ struct op {
 
 struct integrator {
     const char *name, *doc, *source;
-    int order;      /* on smooth problems */
+    int order;       /* on smooth problems */
     int evaluations; /* a step */
     const struct op *op;
     size_t n_op;

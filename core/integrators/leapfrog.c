@@ -5,8 +5,8 @@
  * to the mean of both rates. With rates that do not depend on what is kicked this is the symplectic
  * velocity Verlet; with viscosity it is Springel (2005, MNRAS 364, 1105)'s predicted form. */
 static const struct op kdk_op[] = {
-    {OP_KICK, 0.5}, {OP_DRIFT, 1.0}, {OP_KICK, 0.5}, {OP_SAVE_RATES, 0.0}, {OP_EVALUATE, 1.0},
-    {OP_CORRECT, 0.5},
+    {OP_KICK, 0.5},       {OP_DRIFT, 1.0},    {OP_KICK, 0.5},
+    {OP_SAVE_RATES, 0.0}, {OP_EVALUATE, 1.0}, {OP_CORRECT, 0.5},
 };
 
 const struct integrator integrator_kdk = {

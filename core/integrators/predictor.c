@@ -3,7 +3,7 @@
 #include "integrators/families.h"
 
 static const struct op pec_op[] = {
-    {OP_SAVE_STATE, 0.0}, {OP_DRIFT, 0.5},        {OP_KICK, 0.5},       {OP_EVALUATE, 0.5},
+    {OP_SAVE_STATE, 0.0},  {OP_DRIFT, 0.5},        {OP_KICK, 0.5},        {OP_EVALUATE, 0.5},
     {OP_FINISH_KICK, 0.5}, {OP_FINISH_DRIFT, 1.0}, {OP_FINISH_KICK, 1.0},
 };
 

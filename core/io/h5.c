@@ -14,7 +14,7 @@
 
 #define OFFSET_MAX ((haddr_t)INT64_MAX)
 
-/* -- The driver --------------------------------------------------------------------------------- */
+/* -- The driver -------------------------------------------------------------------------------- */
 
 struct disk_file {
     H5FD_t base; /* HDF5's part, first */
@@ -24,7 +24,8 @@ struct disk_file {
 
 static H5FD_t *disk_open(const char *name, unsigned flags, hid_t fapl, haddr_t maxaddr)
 {
-    (void)name; /* the descriptor is open already: its errors are better told by whoever opened it */
+    /* The descriptor is open already: its errors are better told by whoever opened it. */
+    (void)name;
     (void)flags;
     (void)maxaddr;
     struct h5_disk *const *info = H5Pget_driver_info(fapl);
@@ -149,7 +150,7 @@ static const H5FD_class_t disk_driver = {
     .fl_map = H5FD_FLMAP_DICHOTOMY,
 };
 
-/* -- Sentences ---------------------------------------------------------------------------------- */
+/* -- Sentences --------------------------------------------------------------------------------- */
 
 struct reason {
     int error;      /* an errno that a driver of HDF5 met */
@@ -176,7 +177,7 @@ int h5_error(struct error *e, enum exit_code code, const char *verb, const char 
     return error_set(e, code, "cannot %s %s: %s", verb, path, why);
 }
 
-/* -- Files -------------------------------------------------------------------------------------- */
+/* -- Files ------------------------------------------------------------------------------------- */
 
 static void quieten(void)
 {
@@ -223,7 +224,8 @@ int h5_close(struct h5_out *out, int failed, struct error *e)
     if (close(out->disk.fd) && !out->disk.error)
         out->disk.error = errno;
     if (out->disk.error)
-        failed = error_set(e, EXIT_RUN, "cannot write %s: %s", out->shown, strerror(out->disk.error));
+        failed =
+            error_set(e, EXIT_RUN, "cannot write %s: %s", out->shown, strerror(out->disk.error));
     /* A device or a pipe in the file's place is not ours to remove. */
     struct stat s;
     if (failed && lstat(out->path, &s) == 0 && S_ISREG(s.st_mode))

@@ -6,9 +6,9 @@
 #include "base/error.h"
 #include <hdf5.h>
 
-/* HDF5 cannot be left cleanly once a write has failed: it keeps the file open and tries again as the
- * process ends. So our driver tells it of no failed write; it keeps the first error, drops what
- * follows, and h5_close reports it. */
+/* HDF5 cannot be left cleanly once a write has failed: it keeps the file open and tries again as
+ * the process ends. So our driver tells it of no failed write; it keeps the first error, drops
+ * what follows, and h5_close reports it. */
 struct h5_disk {
     int fd;
     int error; /* errno of the first failure, or 0 */

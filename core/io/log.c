@@ -13,7 +13,7 @@
 #include <time.h>
 #include <unistd.h>
 
-/* -- log.csv ------------------------------------------------------------------------------------ */
+/* -- log.csv ----------------------------------------------------------------------------------- */
 
 int log_open(struct log *l, const char *path, int dim, struct error *e)
 {
@@ -131,7 +131,7 @@ int log_close(struct log *l, struct error *e)
     return result;
 }
 
-/* -- Progress ----------------------------------------------------------------------------------- */
+/* -- Progress ---------------------------------------------------------------------------------- */
 
 #define PROGRESS_INTERVAL 0.1 /* [s] */
 
@@ -162,8 +162,8 @@ static void put_duration(char *out, size_t size, double seconds)
         snprintf(out, size, "%d h %02d min", (int)seconds / 3600, (int)seconds / 60 % 60);
 }
 
-const char *progress_line(char *out, size_t size, const struct progress *p, uint64_t step, double time,
-                          double dt, double drift, double elapsed)
+const char *progress_line(char *out, size_t size, const struct progress *p, uint64_t step,
+                          double time, double dt, double drift, double elapsed)
 {
     const double done = (time - p->begin) / (p->end - p->begin);
     char eta[32] = "?", percent[16] = "";

@@ -20,8 +20,9 @@ struct log_row {
     double wall; /* [s] since the start */
 };
 
-/* The file grows by a row at a time, straight under its name: it can be watched. A row that cannot be
- * written whole (disk full) is an error and is taken back, so that the file ends with a good one. */
+/* The file grows by a row at a time, straight under its name: it can be watched. A row that
+ * cannot be written whole (disk full) is an error and is taken back, so that the file ends with
+ * a good one. */
 struct log {
     FILE *file;
     char *path;
@@ -30,8 +31,8 @@ struct log {
     long good; /* bytes known to be on disk, whole rows */
 };
 int log_open(struct log *l, const char *path, int dim, struct error *e);
-/* Columns: step, time, dt, kinetic, internal, potential, momentum_x ..., angular_z (2D) or angular_x
- * ... (3D), mass, the extras by name, wall_s. The extras are those of the first row. */
+/* Columns: step, time, dt, kinetic, internal, potential, momentum_x ..., angular_z (2D) or
+ * angular_x ... (3D), mass, the extras by name, wall_s. The extras are those of the first row. */
 int log_write(struct log *l, const struct log_row *row, struct error *e);
 /* Syncs and closes. Nothing on a log that was never opened and is zeros. */
 int log_close(struct log *l, struct error *e);
@@ -48,7 +49,7 @@ void progress_show(struct progress *p, uint64_t step, double time, double dt, do
 /* Wipes the line. */
 void progress_end(struct progress *p);
 /* The line as it is shown, for `elapsed` seconds so far. Returns out. */
-const char *progress_line(char *out, size_t size, const struct progress *p, uint64_t step, double time,
-                          double dt, double drift, double elapsed);
+const char *progress_line(char *out, size_t size, const struct progress *p, uint64_t step,
+                          double time, double dt, double drift, double elapsed);
 
 #endif

@@ -19,7 +19,7 @@
 #define LOCK_NAME ".sph-lock"
 #define ASIDE_PREFIX ".sph-aside-"
 
-/* -- The claim ---------------------------------------------------------------------------------- */
+/* -- The claim --------------------------------------------------------------------------------- */
 
 /* mkdir -p. */
 static int make_folder(const char *dir, struct error *e)
@@ -60,14 +60,16 @@ static long lock_holder(int fd)
 static int lock_refused(int fd, const char *dir, struct error *e)
 {
     if (errno != EWOULDBLOCK)
-        return error_set(e, EXIT_USAGE, "cannot lock the output folder %s: %s", dir, strerror(errno));
+        return error_set(e, EXIT_USAGE, "cannot lock the output folder %s: %s", dir,
+                         strerror(errno));
     const long pid = lock_holder(fd);
     if (pid > 0)
         return error_set(e, EXIT_USAGE, "the output folder %s is in use by process %ld", dir, pid);
     return error_set(e, EXIT_USAGE, "the output folder %s is in use by another run", dir);
 }
 
-/* The lock file is removed when a run ends: what is locked must still be what the name stands for. */
+/* The lock file is removed when a run ends: what is locked must still be what the name stands
+ * for. */
 static bool lock_is_current(int fd, const char *path)
 {
     struct stat mine, named;
@@ -151,7 +153,7 @@ int output_open(struct output *o, const char *dir, struct error *e)
     return 0;
 }
 
-/* -- What an earlier run left ------------------------------------------------------------------- */
+/* -- What an earlier run left ------------------------------------------------------------------ */
 
 static bool starts_with(const char *s, const char *prefix)
 {
@@ -205,7 +207,8 @@ static enum owner file_owner(int folder, const char *name)
         return regular ? OURS : FOREIGN;
     if (strcmp(name, "log.csv") == 0) {
         const char mark[] = OUTPUT_LOG_MARK;
-        const bool ours = s.st_size == 0 || file_has_mark(folder, name, mark, sizeof mark - 1, false);
+        const bool ours =
+            s.st_size == 0 || file_has_mark(folder, name, mark, sizeof mark - 1, false);
         return regular && ours ? OURS : FOREIGN;
     }
     if (strcmp(name, "summary.json") == 0)
@@ -229,8 +232,8 @@ static int clear_entry(const struct output *o, int folder, const char *name, boo
                          o->dir, name);
     case OURS:
         if (removing && unlinkat(folder, name, 0) && errno != ENOENT)
-            return error_set(e, EXIT_USAGE, "cannot remove %s/%s of an earlier run: %s", o->dir, name,
-                             strerror(errno));
+            return error_set(e, EXIT_USAGE, "cannot remove %s/%s of an earlier run: %s", o->dir,
+                             name, strerror(errno));
         return 0;
     case NOBODY:
         break;
@@ -256,7 +259,7 @@ int output_clear(const struct output *o, struct error *e)
     return result;
 }
 
-/* -- Files written whole ------------------------------------------------------------------------ */
+/* -- Files written whole ----------------------------------------------------------------------- */
 
 char *output_path(const struct output *o, const char *name)
 {

@@ -1,5 +1,5 @@
-/* io/output.h -- the output folder: claimed for one run, files written aside and renamed, so that nothing
- * is ever half written. */
+/* io/output.h -- the output folder: claimed for one run, files written aside and renamed, so
+ * that nothing is ever half written. */
 #ifndef IO_OUTPUT_H
 #define IO_OUTPUT_H
 
@@ -29,9 +29,9 @@ char *output_path(const struct output *o, const char *name);
 /* Writes a small file whole: aside, synced, renamed. */
 int output_write(const struct output *o, const char *name, const char *text, size_t n,
                  struct error *e);
-/* The same steps for a file that a library writes: a temporary path to write to (fresh memory, NULL
- * when out of memory), then the rename. Commit removes the temporary when it fails; the caller frees
- * the string in any case, or drops both when the library failed. */
+/* The same steps for a file that a library writes: a temporary path to write to (fresh memory,
+ * NULL when out of memory), then the rename. Commit removes the temporary when it fails; the
+ * caller frees the string in any case, or drops both when the library failed. */
 char *output_begin(const struct output *o, const char *name);
 int output_commit(const struct output *o, const char *temporary, const char *name, struct error *e);
 void output_drop(char *temporary);

@@ -26,7 +26,8 @@ static int draw(struct page *p, const struct picture_data *d, const struct rende
     page_draw(p, d, o, graph ? NULL : map);
     const cairo_status_t status = cairo_status(p->cr);
     if (status)
-        return error_set(e, EXIT_RUN, "cannot draw the picture: %s", cairo_status_to_string(status));
+        return error_set(e, EXIT_RUN, "cannot draw the picture: %s",
+                         cairo_status_to_string(status));
     return 0;
 }
 
@@ -37,7 +38,8 @@ int render_png(const char *png, const struct snapshot *s, const struct render_op
     struct colour_map map;
     struct picture_data data;
     struct page page = {0};
-    if (colour_map_make(&map, o->map, e) || picture_data_make(&data, s, o, map.diverging && !graph, e))
+    if (colour_map_make(&map, o->map, e) ||
+        picture_data_make(&data, s, o, map.diverging && !graph, e))
         return -1;
     int result = page_make(&page, &data, o, graph, e);
     if (result == 0)

@@ -12,7 +12,7 @@
 
 #define SAMPLE ((size_t)100000)
 
-/* -- The field ---------------------------------------------------------------------------------- */
+/* -- The field --------------------------------------------------------------------------------- */
 
 struct field {
     const struct snapshot_column *column;
@@ -114,7 +114,7 @@ static void field_label(char *out, size_t size, const struct field *f, const str
              has_unit ? " [" : "", has_unit ? unit : "", has_unit ? "]" : "");
 }
 
-/* -- Where -------------------------------------------------------------------------------------- */
+/* -- Where ------------------------------------------------------------------------------------- */
 
 static int compare(const void *a, const void *b)
 {
@@ -123,7 +123,7 @@ static int compare(const void *a, const void *b)
 }
 
 struct extent {
-    double min, max;       /* of all */
+    double min, max;           /* of all */
     double near_min, near_max; /* without the few that fled */
 };
 
@@ -188,7 +188,7 @@ static int region_set(struct picture_data *d, const struct render_options *o,
         size += d->size[i] / (double)d->n;
     const double range[2] = {x[0].near_max - x[0].near_min, x[1].near_max - x[1].near_min};
     for (int k = 0; k < 2; k++) {
-        double margin = fmax(0.6 * size, 0.01 * range[k]);
+        double margin = fmax(0.6 * size, 0.02 * range[k]);
         if (!(margin > 0))
             margin = range[1 - k] > 0 ? 0.5 * range[1 - k] : 0.5;
         d->min[k] = isnan(o->region_min[k]) ? x[k].near_min - margin : o->region_min[k];
@@ -230,7 +230,7 @@ static int slice_set(struct picture_data *d, const struct render_options *o, con
     return 0;
 }
 
-/* -- Which particles ---------------------------------------------------------------------------- */
+/* -- Which particles --------------------------------------------------------------------------- */
 
 /* All of the array that are anywhere. */
 static int list_all(struct picture_data *d, const char *array, struct error *e)

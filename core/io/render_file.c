@@ -1,4 +1,5 @@
-/* render_file.c -- a cairo surface as a PNG that says that it is ours (io/output.h removes only such). */
+/* render_file.c -- a cairo surface as a PNG that says that it is ours (io/output.h removes only
+ * such). */
 #include "config.h"
 
 #include "io/output.h"
@@ -74,7 +75,8 @@ int png_write(const char *path, cairo_surface_t *surface, struct error *e)
         status = insert_mark(&png);
     int result;
     if (status)
-        result = error_set(e, EXIT_RUN, "cannot write %s: %s", path, cairo_status_to_string(status));
+        result =
+            error_set(e, EXIT_RUN, "cannot write %s: %s", path, cairo_status_to_string(status));
     else
         result = output_write_path(path, png.data, png.n, e);
     free(png.data);

@@ -1,4 +1,5 @@
-/* render_graph.c -- a field over x, for scenes of one dimension: a line and points for each array. */
+/* render_graph.c -- a field over x, for scenes of one dimension: a line and points for each
+ * array. */
 #include "config.h"
 
 #include "io/render_parts.h"
@@ -52,7 +53,8 @@ static size_t collect(const struct picture_data *d, int32_t array, struct point 
     return n;
 }
 
-/* The highest and lowest that a cairo path is asked to reach: far outside is as good as infinite. */
+/* The highest and lowest that a cairo path is asked to reach: far outside is as good as
+ * infinite. */
 static double held(const struct page *p, double y)
 {
     return fmin(fmax(page_y(p, y), p->top - 10 * p->height), p->top + 11 * p->height);

@@ -1,5 +1,5 @@
-/* render_layout.c -- the page of a picture: how large the letters are, where plot and colour bar stand.
- * Draws nothing. */
+/* render_layout.c -- the page of a picture: how large the letters are, where plot and colour bar
+ * stand. Draws nothing. */
 #include "config.h"
 
 #include "io/render_parts.h"
@@ -32,7 +32,8 @@ static void ticks_for(struct page *p, const struct picture_data *d, double width
     const double low = p->log ? d->low : p->min[1], high = p->log ? d->high : p->max[1];
     ticks_make(&p->x, p->min[0], p->max[0], false, (int)(width / (5.0 * p->font)));
     ticks_make(&p->y, low, high, p->log, (int)(height / (3.2 * p->font)));
-    ticks_make(&p->bar, d->low, d->high, d->log, (int)(fmax(height, 9 * p->font) / (3.2 * p->font)));
+    ticks_make(&p->bar, d->low, d->high, d->log,
+               (int)(fmax(height, 9 * p->font) / (3.2 * p->font)));
 }
 
 /* What stands around the plot. */
@@ -60,7 +61,8 @@ static void region_fit(struct page *p, double scale)
 
 /* The plot of a map: one scale for both directions, as large as the room allows. Chooses the page's
  * height (and less width, for what is tall) where the caller does not. */
-static void place_map(struct page *p, const struct margins *m, int *width, int *height, bool free_width)
+static void place_map(struct page *p, const struct margins *m, int *width, int *height,
+                      bool free_width)
 {
     const double dx = p->max[0] - p->min[0], dy = p->max[1] - p->min[1];
     const double bar_least = 9 * p->font, room_x = *width - m->left - m->right;
@@ -97,7 +99,8 @@ static void set_labels(struct page *p, const struct picture_data *d, bool graph)
     char unit[64];
     pretty_unit(unit, sizeof unit, d->s->x_unit, d->s->dim);
     const bool has_unit = *unit && strcmp(d->s->units, "none") != 0;
-    snprintf(p->x_label, sizeof p->x_label, has_unit ? "x [%s]" : "x%s", unit + (has_unit ? 0 : strlen(unit)));
+    snprintf(p->x_label, sizeof p->x_label, has_unit ? "x [%s]" : "x%s",
+             unit + (has_unit ? 0 : strlen(unit)));
     if (graph)
         snprintf(p->y_label, sizeof p->y_label, "%s", d->label);
     else

@@ -131,7 +131,8 @@ static void draw_bar_label(const struct page *p, double x, const char *text)
     cairo_restore(cr);
 }
 
-static void draw_bar(const struct page *p, const struct picture_data *d, const struct colour_map *map)
+static void draw_bar(const struct page *p, const struct picture_data *d,
+                     const struct colour_map *map)
 {
     cairo_t *cr = p->cr;
     const double f = p->font, w = line_width(p), right = p->bar_left + p->bar_width + w;
@@ -191,8 +192,8 @@ static void put_when(char *out, size_t size, const struct picture_data *d,
     if (d->s->dim == 3 && d->section)
         snprintf(out + n, size - (size_t)n, ",  z = %s", pretty_number(a, sizeof a, d->plane));
     else if (d->s->dim == 3)
-        snprintf(out + n, size - (size_t)n, ",  z = %s … %s", pretty_number(a, sizeof a, o->slice[0]),
-                 pretty_number(b, sizeof b, o->slice[1]));
+        snprintf(out + n, size - (size_t)n, ",  z = %s … %s",
+                 pretty_number(a, sizeof a, o->slice[0]), pretty_number(b, sizeof b, o->slice[1]));
 }
 
 static void draw_title(const struct page *p, const struct picture_data *d,

@@ -6,20 +6,20 @@
 #include "io/render.h"
 #include <cairo.h>
 
-/* -- render_data.c: what is drawn --------------------------------------------------------------- */
+/* -- render_data.c: what is drawn -------------------------------------------------------------- */
 
 /* Half the gap that particles next to each other may leave, in units of their size. */
 #define RENDER_REACH 1.7
 
 struct picture_data {
     const struct snapshot *s;
-    size_t n;      /* particles drawn */
-    size_t *index; /* [n] in the snapshot */
-    double *value; /* [n] of the field; NaN: none */
-    double *size;  /* [n] spacing there: the side of the particle's volume */
+    size_t n;         /* particles drawn */
+    size_t *index;    /* [n] in the snapshot */
+    double *value;    /* [n] of the field; NaN: none */
+    double *size;     /* [n] spacing there: the side of the particle's volume */
     double low, high; /* of the colours or of the graph */
     bool log;
-    bool below, above; /* values lie beyond low, high */
+    bool below, above;     /* values lie beyond low, high */
     double min[2], max[2]; /* region: x, y */
     double plane;          /* 3D: z of the section */
     bool section;          /* 3D: cut through volumes, else seen from above */
@@ -32,7 +32,7 @@ void picture_data_free(struct picture_data *d);
 /* Where a value stands between low and high, 0 ... 1 and beyond; NaN for none. */
 double picture_scale(const struct picture_data *d, double value);
 
-/* -- render_text.c: numbers and names for people ------------------------------------------------ */
+/* -- render_text.c: numbers and names for people ----------------------------------------------- */
 
 #define TICKS_MOST 24
 
@@ -52,7 +52,7 @@ const char *pretty_name(const char *name);
 /* "0.6", "−1.5×10⁻⁷" */
 const char *pretty_number(char *out, size_t size, double value);
 
-/* -- render_page.c: where everything is; title, axes, colour bar -------------------------------- */
+/* -- render_page.c: where everything is; title, axes, colour bar ------------------------------- */
 
 struct page {
     cairo_surface_t *surface;
@@ -79,14 +79,14 @@ double page_y(const struct page *p, double y);
 /* A text whose anchor, 0 ... 1 of its width and of its capitals' height, is at (x, y). */
 void page_text(cairo_t *cr, double x, double y, double anchor_x, double anchor_y, const char *text);
 
-/* -- What is in the plot ------------------------------------------------------------------------ */
+/* -- What is in the plot ----------------------------------------------------------------------- */
 
 int splat_draw(struct page *p, const struct picture_data *d, const struct colour_map *map,
                struct error *e);
 int graph_draw(struct page *p, const struct picture_data *d, const struct render_options *o,
                struct error *e);
 
-/* -- render_file.c: the PNG --------------------------------------------------------------------- */
+/* -- render_file.c: the PNG -------------------------------------------------------------------- */
 
 int png_write(const char *path, cairo_surface_t *surface, struct error *e);
 

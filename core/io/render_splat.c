@@ -1,7 +1,8 @@
-/* render_splat.c -- particles as coloured cells: every point takes the colour of the particle that it
- * is nearest to, in units of the particle's size. So the order of the particles does not matter and
- * dense ones are not hidden. Far from particles nothing is drawn; a gap between particles (they lie
- * unevenly where a flow has squeezed them one way) is closed, the edge of the whole is not moved. */
+/* render_splat.c -- particles as coloured cells: every point takes the colour of the particle
+ * that it is nearest to, in units of the particle's size. So the order of the particles does not
+ * matter and dense ones are not hidden. Far from particles nothing is drawn; a gap between
+ * particles (they lie unevenly where a flow has squeezed them one way) is closed, the edge of
+ * the whole is not moved. */
 #include "config.h"
 
 #include "io/render_parts.h"
@@ -9,7 +10,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#define REACH_OPEN 0.7      /* drawn in any case, in units of the particle's size: half a diagonal */
+#define REACH_OPEN 0.7 /* drawn in any case, in units of the particle's size: half a diagonal */
 #define FINE_MOST 6000000.0 /* points */
 #define PAD_MOST 100.0      /* pixels */
 
@@ -101,7 +102,8 @@ static void trim(struct canvas *c)
     const float open = (float)(REACH_OPEN / RENDER_REACH);
     measure_inside(c);
     for (size_t k = 0; k < (size_t)c->width * (size_t)c->height; k++)
-        if (c->near[k] > open * open && c->inside[k] <= (float)(RENDER_REACH - REACH_OPEN) * c->size[k])
+        if (c->near[k] > open * open &&
+            c->inside[k] <= (float)(RENDER_REACH - REACH_OPEN) * c->size[k])
             c->colour[k] = EMPTY;
 }
 
@@ -115,12 +117,15 @@ static uint32_t pixel(const struct canvas *c, int i, int j, const struct colour_
             const size_t row = (size_t)(c->pad + j * c->fine + b);
             const size_t k = row * (size_t)c->width + (size_t)(c->pad + i * c->fine + a);
             const float t = c->colour[k];
-            const unsigned char *rgb = isnan(t) ? none : t == EMPTY ? white : colour_of(map, (double)t);
+            const unsigned char *rgb = isnan(t)     ? none
+                                       : t == EMPTY ? white
+                                                    : colour_of(map, (double)t);
             for (int m = 0; m < 3; m++)
                 sum[m] += rgb[m];
         }
     const unsigned n = (unsigned)(c->fine * c->fine);
-    return (uint32_t)((sum[0] + n / 2) / n << 16 | (sum[1] + n / 2) / n << 8 | (sum[2] + n / 2) / n);
+    return (uint32_t)((sum[0] + n / 2) / n << 16 | (sum[1] + n / 2) / n << 8 |
+                      (sum[2] + n / 2) / n);
 }
 
 static void paint(const struct canvas *c, struct page *p, const struct colour_map *map)

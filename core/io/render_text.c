@@ -10,7 +10,7 @@
 
 #define COUNT(a) (sizeof(a) / sizeof((a)[0]))
 
-/* -- Powers ------------------------------------------------------------------------------------- */
+/* -- Powers ------------------------------------------------------------------------------------ */
 
 static const char *const superscript[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
 
@@ -30,7 +30,7 @@ static void add_power(char *out, size_t size, int power)
         add(out, size, *c == '-' ? "⁻" : superscript[*c - '0']);
 }
 
-/* -- Ticks -------------------------------------------------------------------------------------- */
+/* -- Ticks ------------------------------------------------------------------------------------- */
 
 /* The smallest of 1, 2, 2.5, 5 times a power of ten that needs at most `most` ticks. */
 static double round_step(double range, int most)
@@ -122,17 +122,33 @@ void ticks_make(struct ticks *t, double low, double high, bool log, int most)
     }
 }
 
-/* -- Units and names ---------------------------------------------------------------------------- */
+/* -- Units and names --------------------------------------------------------------------------- */
+
+/* "^d", "^(d+1)", "^(d-1)" stand for a number: how many characters they take, 0 for anything else. */
+static int dimension_power(const char *text, int dim, int *power)
+{
+    int taken = 0, more = 0;
+    *power = dim;
+    if (strncmp(text, "^d", 2) == 0)
+        return 2;
+    if (sscanf(text, "^(d%2d)%n", &more, &taken) == 1 && taken > 0) {
+        *power = dim + more;
+        return taken;
+    }
+    return 0;
+}
 
 const char *pretty_unit(char *out, size_t size, const char *unit, int dim)
 {
     out[0] = '\0';
     for (const char *c = unit; *c;) {
         char *end = NULL;
-        if (*c == '^' && c[1] == 'd') {
-            if (dim != 1)
-                add_power(out, size, dim);
-            c += 2;
+        int power = 0;
+        const int skipped = dimension_power(c, dim, &power);
+        if (skipped) {
+            if (power != 1)
+                add_power(out, size, power);
+            c += skipped;
         } else if (*c == '^' && (strtol(c + 1, &end, 10), end > c + 1 && end < c + 6)) {
             add_power(out, size, (int)strtol(c + 1, NULL, 10));
             c = end;
@@ -152,10 +168,10 @@ const char *pretty_unit(char *out, size_t size, const char *unit, int dim)
 const char *pretty_name(const char *name)
 {
     static const char *const greek[][2] = {
-        {"alpha", "α"}, {"beta", "β"},    {"gamma", "γ"}, {"delta", "δ"}, {"epsilon", "ε"},
-        {"eta", "η"},   {"theta", "θ"},   {"kappa", "κ"}, {"lambda", "λ"}, {"mu", "μ"},
-        {"nu", "ν"},    {"rho", "ρ"},     {"sigma", "σ"}, {"tau", "τ"},    {"phi", "φ"},
-        {"chi", "χ"},   {"psi", "ψ"},     {"omega", "ω"}};
+        {"alpha", "α"}, {"beta", "β"},  {"gamma", "γ"}, {"delta", "δ"},  {"epsilon", "ε"},
+        {"eta", "η"},   {"theta", "θ"}, {"kappa", "κ"}, {"lambda", "λ"}, {"mu", "μ"},
+        {"nu", "ν"},    {"rho", "ρ"},   {"sigma", "σ"}, {"tau", "τ"},    {"phi", "φ"},
+        {"chi", "χ"},   {"psi", "ψ"},   {"omega", "ω"}};
     for (size_t i = 0; i < COUNT(greek); i++)
         if (strcmp(greek[i][0], name) == 0)
             return greek[i][1];

@@ -1,5 +1,5 @@
-/* snapshot.c -- writes snapshots as VTKHDF: the particles as a grid of vertex cells, what they are and
- * where they come from as attributes and field data. Reading is in snapshot_read.c. */
+/* snapshot.c -- writes snapshots as VTKHDF: the particles as a grid of vertex cells, what they
+ * are and where they come from as attributes and field data. Reading is in snapshot_read.c. */
 #include "config.h"
 
 #include "io/snapshot.h"
@@ -39,14 +39,15 @@ static int failed(struct writer *w)
     return h5_error(w->e, EXIT_RUN, "write", w->file.shown);
 }
 
-/* -- Small things: attributes, field data ------------------------------------------------------- */
+/* -- Small things: attributes, field data ------------------------------------------------------ */
 
 /* Writes one value as an attribute of `where`, or as a data set of one element in it. */
 static int put_value(struct writer *w, hid_t where, const char *name, hid_t type, const void *value,
                      size_t n, bool attribute)
 {
     const hsize_t extent[1] = {n};
-    const hid_t space = n == 1 && attribute ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, extent, NULL);
+    const hid_t space =
+        n == 1 && attribute ? H5Screate(H5S_SCALAR) : H5Screate_simple(1, extent, NULL);
     const hid_t id =
         attribute ? H5Acreate2(where, name, type, space, H5P_DEFAULT, H5P_DEFAULT)
                   : H5Dcreate2(where, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
@@ -73,8 +74,10 @@ static int put_text_attribute(struct writer *w, hid_t where, const char *name, c
     return result;
 }
 
-/* Field data: texts of fixed length, ASCII by name (the bytes are UTF-8). VTK 9.1 reads no others. */
-static int put_texts(struct writer *w, hid_t where, const char *name, const char *const *text, size_t n)
+/* Field data: texts of fixed length, ASCII by name (the bytes are UTF-8). VTK 9.1 reads no
+ * others. */
+static int put_texts(struct writer *w, hid_t where, const char *name, const char *const *text,
+                     size_t n)
 {
     size_t size = 1;
     for (size_t i = 0; i < n; i++)
@@ -103,10 +106,11 @@ static int put_text(struct writer *w, hid_t where, const char *name, const char 
     return put_texts(w, where, name, &text, 1);
 }
 
-/* -- Columns ------------------------------------------------------------------------------------ */
+/* -- Columns ----------------------------------------------------------------------------------- */
 
 /* Fills rows [first, first + count) of array `a` into the slab. */
-typedef void fill_fn(const struct writer *w, const void *what, size_t a, size_t first, size_t count);
+typedef void fill_fn(const struct writer *w, const void *what, size_t a, size_t first,
+                     size_t count);
 
 static bool is_integer(uint32_t type)
 {
@@ -127,7 +131,8 @@ static void fill_nothing(const struct writer *w, const struct out_column *c, siz
     }
 }
 
-static void fill_column(const struct writer *w, const void *what, size_t a, size_t first, size_t count)
+static void fill_column(const struct writer *w, const void *what, size_t a, size_t first,
+                        size_t count)
 {
     const struct out_column *c = what;
     if (c->at[a] == NOT_THERE) {
@@ -141,15 +146,18 @@ static void fill_column(const struct writer *w, const void *what, size_t a, size
         const size_t offset = k * from->plane + first;
         if (from->size == sizeof(double)) /* bytes are copied: an int64_t travels as well */
             for (size_t i = 0; i < count; i++)
-                memcpy((char *)w->slab + (i * c->ncomp + k) * 8, (char *)from->data + (offset + i) * 8, 8);
+                memcpy((char *)w->slab + (i * c->ncomp + k) * 8,
+                       (char *)from->data + (offset + i) * 8, 8);
         else
             for (size_t i = 0; i < count; i++)
-                memcpy((char *)w->slab + (i * c->ncomp + k) * 4, (char *)from->data + (offset + i) * 4, 4);
+                memcpy((char *)w->slab + (i * c->ncomp + k) * 4,
+                       (char *)from->data + (offset + i) * 4, 4);
     }
 }
 
 /* Positions become doubles, whatever they are in memory. */
-static void fill_points(const struct writer *w, const void *what, size_t a, size_t first, size_t count)
+static void fill_points(const struct writer *w, const void *what, size_t a, size_t first,
+                        size_t count)
 {
     const struct out_column *c = what;
     double *to = w->slab;
@@ -165,7 +173,8 @@ static void fill_points(const struct writer *w, const void *what, size_t a, size
         }
 }
 
-static void fill_array(const struct writer *w, const void *what, size_t a, size_t first, size_t count)
+static void fill_array(const struct writer *w, const void *what, size_t a, size_t first,
+                       size_t count)
 {
     (void)what;
     (void)first;
@@ -237,7 +246,7 @@ static int put_column(struct writer *w, hid_t where, const char *name, hid_t typ
     return result ? -1 : 0;
 }
 
-/* -- Which columns ------------------------------------------------------------------------------ */
+/* -- Which columns ----------------------------------------------------------------------------- */
 
 static int note_column(struct writer *w, size_t a, size_t k)
 {
@@ -291,20 +300,22 @@ static int note_columns(struct writer *w)
     return w->slab ? 0 : error_memory(w->e, "a snapshot", SLAB * widest * sizeof(double));
 }
 
-/* -- The parts of the file ---------------------------------------------------------------------- */
+/* -- The parts of the file --------------------------------------------------------------------- */
 
 static int put_header(struct writer *w)
 {
     const int64_t version[2] = {1, 0}, n = (int64_t)w->total;
     const char kind[] = "UnstructuredGrid";
     const hid_t type = H5Tcopy(H5T_C_S1);
-    if (type < 0 || H5Tset_size(type, sizeof kind - 1) < 0 || H5Tset_strpad(type, H5T_STR_NULLPAD) < 0)
+    if (type < 0 || H5Tset_size(type, sizeof kind - 1) < 0 ||
+        H5Tset_strpad(type, H5T_STR_NULLPAD) < 0)
         return failed(w);
-    const int result = put_value(w, w->group, "Version", H5T_NATIVE_INT64, version, 2, true) ||
-                       put_value(w, w->group, "Type", type, kind, 1, true) ||
-                       put_value(w, w->group, "NumberOfPoints", H5T_NATIVE_INT64, &n, 1, false) ||
-                       put_value(w, w->group, "NumberOfCells", H5T_NATIVE_INT64, &n, 1, false) ||
-                       put_value(w, w->group, "NumberOfConnectivityIds", H5T_NATIVE_INT64, &n, 1, false);
+    const int result =
+        put_value(w, w->group, "Version", H5T_NATIVE_INT64, version, 2, true) ||
+        put_value(w, w->group, "Type", type, kind, 1, true) ||
+        put_value(w, w->group, "NumberOfPoints", H5T_NATIVE_INT64, &n, 1, false) ||
+        put_value(w, w->group, "NumberOfCells", H5T_NATIVE_INT64, &n, 1, false) ||
+        put_value(w, w->group, "NumberOfConnectivityIds", H5T_NATIVE_INT64, &n, 1, false);
     H5Tclose(type);
     return result ? -1 : 0;
 }
@@ -330,7 +341,8 @@ static int put_cells(struct writer *w, const char *name, hid_t type, size_t size
             for (size_t k = 0; k < count[0]; k++)
                 ((int64_t *)w->slab)[k] = (int64_t)(i + k);
         const hid_t memory = H5Screate_simple(1, count, NULL);
-        if (memory < 0 || H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL) < 0 ||
+        if (memory < 0 ||
+            H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL) < 0 ||
             H5Dwrite(set, type, memory, space, H5P_DEFAULT, w->slab) < 0)
             result = failed(w);
         if (memory >= 0)
@@ -372,10 +384,10 @@ static int put_columns(struct writer *w)
     int result = put_column(w, where, "array", H5T_NATIVE_INT32, &of_array, fill_array);
     for (size_t i = 0; i < w->n_column && result == 0; i++) {
         const struct column *c = w->column[i].like;
-        const hid_t type = c->type == SPH_INT32           ? H5T_NATIVE_INT32
-                           : is_integer(c->type)          ? H5T_NATIVE_INT64
-                           : c->size == sizeof(float)     ? H5T_NATIVE_FLOAT
-                                                          : H5T_NATIVE_DOUBLE;
+        const hid_t type = c->type == SPH_INT32       ? H5T_NATIVE_INT32
+                           : is_integer(c->type)      ? H5T_NATIVE_INT64
+                           : c->size == sizeof(float) ? H5T_NATIVE_FLOAT
+                                                      : H5T_NATIVE_DOUBLE;
         if (strcmp(c->name, "x") != 0)
             result = put_column(w, where, c->name, type, &w->column[i], fill_column);
     }
@@ -403,8 +415,8 @@ static int put_array_list(struct writer *w, hid_t where)
     return result ? -1 : 0;
 }
 
-/* What the columns are, where VTK sees it (it has no eye for attributes), and as texts of fixed length,
- * which a damaged file cannot make dangerous to read. */
+/* What the columns are, where VTK sees it (it has no eye for attributes), and as texts of fixed
+ * length, which a damaged file cannot make dangerous to read. */
 static int put_column_list(struct writer *w, hid_t where)
 {
     const char **text = calloc(3 * w->n_column + 1, sizeof *text);

@@ -1,6 +1,6 @@
-/* io/snapshot.h -- snapshots as VTKHDF (UnstructuredGrid with a vertex cell a particle, version 1.0: opens in
- * ParaView and VTK 9.1 and later), readable by h5py, self-describing: units and documentation of
- * every column, the whole scene, time and step, versions. */
+/* io/snapshot.h -- snapshots as VTKHDF (UnstructuredGrid with a vertex cell a particle, version
+ * 1.0: opens in ParaView and VTK 9.1 and later), readable by h5py, self-describing: units and
+ * documentation of every column, the whole scene, time and step, versions. */
 #ifndef IO_SNAPSHOT_H
 #define IO_SNAPSHOT_H
 
@@ -13,16 +13,16 @@ struct snapshot_meta {
     uint64_t step;
 };
 
-/* Writes all arrays into one file: columns by plain name (vectors as 3 components; tensors flat), an
- * `array` column (index) and field data that names them; a column that an array lacks is NaN (or -1
- * for integers) there. The positions, column "x", are the points and stand there only. Columns
- * without `output` and ghosts are left out. When it fails, disk full included, the file is removed;
- * a caller who keeps the final name clean writes aside (io/output.h).
+/* Writes all arrays into one file: columns by plain name (vectors as 3 components; tensors
+ * flat), an `array` column (index) and field data that names them; a column that an array lacks
+ * is NaN (or -1 for integers) there. The positions, column "x", are the points and stand there
+ * only. Columns without `output` and ghosts are left out. When it fails, disk full included, the
+ * file is removed; a caller who keeps the final name clean writes aside (io/output.h).
  *
- * Beside what VTK asks for: attributes `unit`, `doc` (and `components` of tensors) on every column
- * and on Points; `title`, `units`, `version`, `dimensions`, `time`, `step` on the file; TimeValue,
- * Time, Step, array_names, array_sizes, column_names, column_units, column_docs, title, units,
- * version, scene_path and scene as field data. */
+ * * Beside what VTK asks for: attributes `unit`, `doc` (and `components` of tensors) on every
+ * column and on Points; `title`, `units`, `version`, `dimensions`, `time`, `step` on the file;
+ * TimeValue, Time, Step, array_names, array_sizes, column_names, column_units, column_docs,
+ * title, units, version, scene_path and scene as field data. */
 int snapshot_write(const char *path, const struct particles *arrays, size_t n,
                    const struct snapshot_meta *meta, struct error *e);
 

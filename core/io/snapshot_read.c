@@ -1,5 +1,5 @@
-/* snapshot_read.c -- reads snapshots back, ours and those of others. Trusts nothing in a file: sizes are
- * held against the file's own, links and storage that lead out of it are refused. */
+/* snapshot_read.c -- reads snapshots back, ours and those of others. Trusts nothing in a file:
+ * sizes are held against the file's own, links and storage that lead out of it are refused. */
 #include "config.h"
 
 #include "io/snapshot.h"
@@ -15,7 +15,7 @@
 #define TEXT_MOST ((size_t)64 << 20) /* bytes of a text */
 #define COLUMNS_MOST 4096
 #define COMPONENTS_MOST 64
-#define TEXTS_MOST 4096 /* in a list; so many arrays at most */
+#define TEXTS_MOST 4096    /* in a list; so many arrays at most */
 #define PACKED_MOST 1100.0 /* deflate makes at most 1032 bytes of one */
 
 /* Field data "column_names", "column_units" and "column_docs". */
@@ -43,7 +43,7 @@ static int unreadable(const struct reader *r)
     return h5_error(r->e, EXIT_USAGE, "read", r->path);
 }
 
-/* -- Texts -------------------------------------------------------------------------------------- */
+/* -- Texts ------------------------------------------------------------------------------------- */
 
 /* n bytes as a string of valid UTF-8: others would stop the picture's labels. */
 static char *clean_copy(const char *from, size_t n)
@@ -62,7 +62,8 @@ static char *clean_copy(const char *from, size_t n)
 
 static int read_values(hid_t id, bool attribute, hid_t type, void *to)
 {
-    return (attribute ? H5Aread(id, type, to) : H5Dread(id, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, to)) < 0
+    return (attribute ? H5Aread(id, type, to)
+                      : H5Dread(id, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, to)) < 0
                ? -1
                : 0;
 }
@@ -96,8 +97,8 @@ static size_t read_texts(hid_t id, bool attribute, char **to, size_t most)
 static bool is_here(hid_t where, const char *name)
 {
     H5L_info_t info;
-    return H5Lexists(where, name, H5P_DEFAULT) > 0 && H5Lget_info(where, name, &info, H5P_DEFAULT) >= 0 &&
-           info.type == H5L_TYPE_HARD;
+    return H5Lexists(where, name, H5P_DEFAULT) > 0 &&
+           H5Lget_info(where, name, &info, H5P_DEFAULT) >= 0 && info.type == H5L_TYPE_HARD;
 }
 
 /* A text by name: of an attribute of `where`; "" if there is none. */
@@ -114,7 +115,7 @@ static char *attribute_text(hid_t where, const char *name)
     return text ? text : calloc(1, 1);
 }
 
-/* -- Data sets ---------------------------------------------------------------------------------- */
+/* -- Data sets --------------------------------------------------------------------------------- */
 
 /* Whether the data are in the file and not elsewhere. */
 static bool is_stored_here(hid_t set)
@@ -177,7 +178,8 @@ static double *read_doubles(const struct reader *r, hid_t set, size_t n, uint32_
 }
 
 /* One number of the field data, or of an attribute of the file. */
-static bool read_number(const struct reader *r, const char *field, const char *attribute, double *to)
+static bool read_number(const struct reader *r, const char *field, const char *attribute,
+                        double *to)
 {
     size_t n;
     uint32_t ncomp;
@@ -229,7 +231,7 @@ static char *field_text(const struct reader *r, const char *name)
     return field_texts(r, name, &text, 1) ? text : calloc(1, 1);
 }
 
-/* -- Units and documentation of the columns ------------------------------------------------------ */
+/* -- Units and documentation of the columns ---------------------------------------------------- */
 
 static int words_read(struct reader *r)
 {
@@ -262,7 +264,7 @@ static char *word_of(const struct reader *r, hid_t set, const char *column, char
     return attribute_text(set, attribute);
 }
 
-/* -- The parts of a snapshot -------------------------------------------------------------------- */
+/* -- The parts of a snapshot ------------------------------------------------------------------- */
 
 static int read_points(struct reader *r)
 {
@@ -291,9 +293,9 @@ static int read_column(struct reader *r, hid_t where, const char *name)
         return 0;
     if (set_shape(r, set, &n, &c->ncomp) && n == r->s->n) {
         char *clean = clean_copy(name, strlen(name));
-        *c = (struct snapshot_column){
-            clean, word_of(r, set, name, r->words->unit, "unit"),
-            word_of(r, set, name, r->words->doc, "doc"), c->ncomp, read_doubles(r, set, n, c->ncomp)};
+        *c = (struct snapshot_column){clean, word_of(r, set, name, r->words->unit, "unit"),
+                                      word_of(r, set, name, r->words->doc, "doc"), c->ncomp,
+                                      read_doubles(r, set, n, c->ncomp)};
         r->s->n_column++; /* snapshot_free takes it from here */
         if (!c->name || !c->unit || !c->doc)
             result = error_memory(r->e, "a snapshot", strlen(name));
@@ -399,7 +401,8 @@ static int read_meta(struct reader *r)
         read_number(r, "Time", "time", &s->time);
     if (read_number(r, "Step", "step", &number) && number >= 0 && number < 1e18)
         s->step = (uint64_t)number;
-    if (read_number(r, "dimensions", "dimensions", &number) && (number == 1 || number == 2 || number == 3))
+    if (read_number(r, "dimensions", "dimensions", &number) &&
+        (number == 1 || number == 2 || number == 3))
         s->dim = (int)number;
     else
         s->dim = guess_dimensions(s);
@@ -424,7 +427,8 @@ int snapshot_read(struct snapshot *s, const char *path, struct error *e)
         r.grid = H5Gopen2(r.file, "VTKHDF", H5P_DEFAULT);
     if (r.grid < 0)
         damaged(&r, "it is not a snapshot (it has no group VTKHDF)");
-    else if (!words_read(&r) && !read_points(&r) && !read_columns(&r) && !read_arrays(&r) && !read_meta(&r))
+    else if (!words_read(&r) && !read_points(&r) && !read_columns(&r) && !read_arrays(&r) &&
+             !read_meta(&r))
         result = 0;
     if (r.grid >= 0)
         H5Gclose(r.grid);

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* -- Numbers ------------------------------------------------------------------------------------ */
+/* -- Numbers ----------------------------------------------------------------------------------- */
 
 double summary_ns_per_pair(const struct summary *s)
 {
@@ -36,7 +36,7 @@ double summary_us_per_update(const struct summary *s)
     return n ? 1e6 * s->cost.loop / (double)n : (double)NAN;
 }
 
-/* -- JSON --------------------------------------------------------------------------------------- */
+/* -- JSON -------------------------------------------------------------------------------------- */
 
 /* A tree in the making; `failed` once memory ran out. */
 struct maker {
@@ -46,7 +46,8 @@ struct maker {
 /* Takes `item`, which may be NULL, into the object (by name) or the array (name NULL). */
 static cJSON *put(struct maker *m, cJSON *into, const char *name, cJSON *item)
 {
-    if (item && into && (name ? cJSON_AddItemToObject(into, name, item) : cJSON_AddItemToArray(into, item)))
+    if (item && into &&
+        (name ? cJSON_AddItemToObject(into, name, item) : cJSON_AddItemToArray(into, item)))
         return item;
     cJSON_Delete(item);
     m->failed = true;
@@ -128,7 +129,9 @@ static void put_conservation(struct maker *m, cJSON *root, const struct summary 
     put_number(m, c, "energy_drift", s->energy_drift);
     put_vector(m, c, "momentum_drift", s->momentum_drift, s->dim);
     put_vector(m, c, "angular_drift", s->dim == 2 ? s->angular_drift + 2 : s->angular_drift,
-               s->dim == 3 ? 3 : s->dim == 2 ? 1 : 0);
+               s->dim == 3   ? 3
+               : s->dim == 2 ? 1
+                             : 0);
     put_number(m, c, "mass_drift", s->mass_drift);
 }
 
@@ -175,7 +178,8 @@ static void put_cost(struct maker *m, cJSON *root, const struct summary *s)
 
 static void put_plan(struct maker *m, cJSON *root, const struct summary *s)
 {
-    cJSON *plan = put(m, root, "plan", s->plan ? cJSON_Duplicate(s->plan, 1) : cJSON_CreateObject());
+    cJSON *plan =
+        put(m, root, "plan", s->plan ? cJSON_Duplicate(s->plan, 1) : cJSON_CreateObject());
     if (cJSON_IsObject(plan) && !cJSON_HasObjectItem(plan, "arrays"))
         put_object(m, plan, "arrays");
     if (cJSON_IsObject(plan) && !cJSON_HasObjectItem(plan, "passes"))

@@ -62,13 +62,13 @@ struct summary {
 cJSON *summary_json(const struct summary *s);
 int summary_write(const struct summary *s, const struct output *o, struct error *e);
 
-/* Wall time of the passes over pairs for each of their pairs, of the whole loop if no pass was timed
- * [ns]; wall time of the loop for each particle update [us]. NaN if there were none. */
+/* Wall time of the passes over pairs for each of their pairs, of the whole loop if no pass was
+ * timed [ns]; wall time of the loop for each particle update [us]. NaN if there were none. */
 double summary_ns_per_pair(const struct summary *s);
 double summary_us_per_update(const struct summary *s);
 
-/* The table for people: particles, steps, probes beside what is expected, errors, drift, ns per pair,
- * us per update. At most 80 columns, but for long names and paths. */
+/* The table for people: particles, steps, probes beside what is expected, errors, drift, ns per
+ * pair, us per update. At most 80 columns, but for long names and paths. */
 void summary_table(const struct summary *s, FILE *out);
 
 #endif

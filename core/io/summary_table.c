@@ -71,8 +71,8 @@ static void print_particles(const struct summary *s, FILE *out, int width)
     label(out, width, "particles", "");
     for (size_t i = 0; i < s->n_array; i++) {
         char text[160];
-        snprintf(text, sizeof text, "%s %llu%s", s->array_name[i], (unsigned long long)s->array_n[i],
-                 i + 1 < s->n_array ? ", " : "");
+        snprintf(text, sizeof text, "%s %llu%s", s->array_name[i],
+                 (unsigned long long)s->array_n[i], i + 1 < s->n_array ? ", " : "");
         if (i > 0 && column + columns(text) > WIDTH) {
             fprintf(out, "\n%*s", width + 2, "");
             column = width + 2;

@@ -3,7 +3,8 @@
 #include "neighbours/neighbours.h"
 #include <sph/batch.h>
 
-uint64_t group_list_count(const struct group_list *list, const struct cloud *dst, const struct cloud *src)
+uint64_t group_list_count(const struct group_list *list, const struct cloud *dst,
+                          const struct cloud *src)
 {
     uint64_t pairs = 0;
     for (size_t g = 0; g < list->n_group; g++) {

@@ -33,7 +33,7 @@ struct group_list {
     uint32_t *source;
     size_t n_group, capacity, group_capacity;
     bool symmetric;
-    double true_share;   /* set by who counts (group_list_count): true pairs per entry of the list */
+    double true_share; /* set by who counts (group_list_count): true pairs per entry of the list */
     uint64_t candidates; /* distances computed while making it */
 };
 

@@ -65,8 +65,8 @@ static void find_reads(struct assignment *a, const struct particles *p, const ch
         for (size_t k = 0; k < N_ALWAYS; k++)
             reserved = reserved || strcmp(column->name, always[k]) == 0;
         if (column->type == SPH_SCALAR && !reserved && mentions(text, column->name))
-            a->prop[a->n_read++] = (sph_prop){column->name, column->unit, column->doc, SPH_SCALAR,
-                                              SPH_DST_READ, 0.0};
+            a->prop[a->n_read++] =
+                (sph_prop){column->name, column->unit, column->doc, SPH_SCALAR, SPH_DST_READ, 0.0};
     }
 }
 
@@ -77,10 +77,12 @@ static int make(struct assignment *a, const struct plan *plan, const struct step
     const struct document *d = plan->scene->doc;
     int target = particles_find(p, s->of);
     if (target < 0)
-        return document_fail(d, s->node, e, "array \"%s\" has no property \"%s\" to assign to", p->name, s->of);
+        return document_fail(d, s->node, e, "array \"%s\" has no property \"%s\" to assign to",
+                             p->name, s->of);
     const struct column *column = &p->column[target];
     if (column->type != SPH_SCALAR && column->type != SPH_INT32)
-        return document_fail(d, s->node, e, "\"%s\" is no scalar: an expression cannot be assigned to it", s->of);
+        return document_fail(d, s->node, e,
+                             "\"%s\" is no scalar: an expression cannot be assigned to it", s->of);
     find_reads(a, p, s->expression);
     uint32_t n = a->n_read;
     a->prop[n] = (sph_prop){"x", "m", "position", SPH_VECTOR, SPH_DST_READ, 0.0};
@@ -103,7 +105,8 @@ static int make(struct assignment *a, const struct plan *plan, const struct step
     return 0;
 }
 
-int assignment_bind(struct plan *plan, struct pass *pass, const struct step *s, size_t array, struct error *e)
+int assignment_bind(struct plan *plan, struct pass *pass, const struct step *s, size_t array,
+                    struct error *e)
 {
     struct assignment *a = calloc(1, sizeof *a);
     if (!a)

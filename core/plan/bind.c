@@ -39,7 +39,7 @@ static int check_arrays(const struct plan *plan, const struct step *s, const cha
 
 /* Columns of `array` for every declared property; access_mask: those that must exist there. */
 int bind_columns(struct plan *plan, struct binding *b, size_t array, const sph_item *item,
-                        uint32_t access_mask, struct error *e)
+                 uint32_t access_mask, struct error *e)
 {
     struct particles *p = &plan->array[array].p;
     b->array = array;
@@ -115,6 +115,35 @@ static struct pass *new_pass(struct plan *plan, const struct step *s, size_t arr
 #define DST_ANY                                                                                    \
     (SPH_DST_READ | SPH_DST_WRITE | SPH_DST_SUM | SPH_DST_MAX | SPH_DST_MIN | SPH_SRC_READ)
 
+/* What the scene says of an operation must fit what is declared: an assignment acts on each particle alone, a
+ * summation sums over neighbours, an integration gives a rate. */
+static int check_operation(struct plan *plan, const struct pass *p, const struct step *s,
+                           struct error *e)
+{
+    const struct document *d = plan->scene->doc;
+    const char *operation = s->operation ? s->operation : "";
+    bool integration = strcmp(operation, "integration") == 0, sets = false, rate = false;
+    for (uint32_t i = 0; p->function && i < p->function->rates.count; i++) {
+        const sph_rate *r = list_at(&p->function->rates, i);
+        rate = rate || !s->of || strcmp(r->property, s->of) == 0;
+    }
+    for (uint32_t k = 0; s->of && k < p->use.item->props.count; k++) {
+        const sph_prop *prop = list_at(&p->use.item->props, k);
+        sets = sets || ((prop->access & (SPH_DST_WRITE | SPH_DST_SUM | SPH_DST_MAX | SPH_DST_MIN)) &&
+                        strcmp(prop->name, s->of) == 0);
+    }
+    if (strcmp(operation, "summation") == 0 && p->shape != SPH_PAIR)
+        return document_fail(d, s->node, e, "%s is no summation: it sums over no neighbours", s->name);
+    if (strcmp(operation, "assignment") == 0 && p->shape == SPH_PAIR)
+        return document_fail(d, s->node, e, "%s is no assignment: it sums over neighbours", s->name);
+    if (integration && !rate)
+        return document_fail(d, s->node, e, "%s is no integration: it declares no rate%s%s%s", s->name,
+                             s->of ? " of \"" : "", s->of ? s->of : "", s->of ? "\"" : "");
+    if (s->of && !integration && !sets && (s->operation || !rate))
+        return document_fail(d, s->node, e, "%s does not set \"%s\"", s->name, s->of);
+    return 0;
+}
+
 static int bind_eos(struct plan *plan, const struct step *s, size_t array, struct error *e)
 {
     const struct scene_material *m = material_of(plan, array);
@@ -130,7 +159,7 @@ static int bind_eos(struct plan *plan, const struct step *s, size_t array, struc
     const sph_eos *eos = entry_eos(p->use.entry);
     p->shape = SPH_POINT;
     p->run = eos->run;
-    if (bind_columns(plan, &p->dst, array, eos->item, DST_ANY, e))
+    if (bind_columns(plan, &p->dst, array, eos->item, DST_ANY, e) || check_operation(plan, p, s, e))
         return -1;
     /* The state and parameters that the inverse needs, too. */
     return plan->array[array].eos.item ? 0 : configure_eos(plan, &plan->array[array].eos, m, e);
@@ -162,44 +191,12 @@ static int bind_sources(struct plan *plan, struct pass *p, const struct step *s,
     return 0;
 }
 
-static int check_operation(struct plan *plan, const struct pass *p, const struct step *s,
-                           struct error *e)
-{
-    if (!s->operation)
-        return 0;
-    const struct document *d = plan->scene->doc;
-    bool writes = false, adds = false, rate = false;
-    for (uint32_t k = 0; s->of && k < p->use.item->props.count; k++) {
-        const sph_prop *prop = list_at(&p->use.item->props, k);
-        const char *target = s->of;
-        for (uint32_t i = 0; i < p->function->rates.count; i++) {
-            const sph_rate *r = list_at(&p->function->rates, i);
-            if (strcmp(r->property, s->of) == 0 && strcmp(r->rate, prop->name) == 0) {
-                target = r->rate;
-                rate = true;
-            }
-        }
-        if (strcmp(prop->name, target) != 0)
-            continue;
-        writes = writes || (prop->access & SPH_DST_WRITE);
-        adds = adds || (prop->access & (SPH_DST_SUM | SPH_DST_MAX | SPH_DST_MIN));
-    }
-    if (s->of && !writes && !adds)
-        return document_fail(d, s->node, e, "%s does not set \"%s\"", s->name, s->of);
-    if (strcmp(s->operation, "summation") == 0 && p->shape != SPH_PAIR)
-        return document_fail(d, s->node, e, "%s is no summation: it sums over no neighbours", s->name);
-    if (strcmp(s->operation, "integration") == 0 && s->of && !rate)
-        return document_fail(d, s->node, e, "%s is no integration: it declares no rate of \"%s\"",
-                             s->name, s->of);
-    return 0;
-}
-
 static int bind_function(struct plan *plan, const struct step *s, size_t array, struct error *e)
 {
     const struct entry *entry = registry_find(plan->registry, KIND_FUNCTION, s->name);
     if (!entry)
-        return plan_unknown(plan, s->node ? s->node : plan->scene->scheme.node, KIND_FUNCTION, s->name,
-                            e);
+        return plan_unknown(plan, s->node ? s->node : plan->scene->scheme.node, KIND_FUNCTION,
+                            s->name, e);
     const sph_function *f = entry_function(entry);
     if (!(f->item->dims & (1u << plan->dim)))
         return document_fail(plan->scene->doc, s->node ? s->node : plan->scene->scheme.node, e,
@@ -238,8 +235,9 @@ static int bind_reductions(struct plan *plan, size_t pass, struct error *e)
         if (!bigger)
             return error_memory(e, "reductions", sizeof *bigger);
         plan->reduction = bigger;
-        bigger[plan->n_reduction - 1] = (struct reduction){
-            declared, pass, p->dst.array, particles_find(&plan->array[p->dst.array].p, declared->property)};
+        bigger[plan->n_reduction - 1] =
+            (struct reduction){declared, pass, p->dst.array,
+                               particles_find(&plan->array[p->dst.array].p, declared->property)};
     }
     return 0;
 }
@@ -252,7 +250,8 @@ int bind_passes(struct plan *plan, struct error *e)
     plan->reach_scale = 0.0;
     for (size_t i = 0; i < plan->n_step; i++) {
         const struct step *s = &plan->step[i];
-        if (check_arrays(plan, s, s->to, s->n_to, e) || check_arrays(plan, s, s->from, s->n_from, e))
+        if (check_arrays(plan, s, s->to, s->n_to, e) ||
+            check_arrays(plan, s, s->from, s->n_from, e))
             return -1;
         for (size_t a = 0; a < plan->n_array; a++) {
             if (!listed(s->to, s->n_to, plan->array[a].p.name))

@@ -48,7 +48,7 @@ int columns_begin(struct plan *plan, bool guarded, struct error *e)
     return 0;
 }
 
-/* Whether anything needs the column's value before the passes of an evaluation have made it. */
+/* Whether anything needs the column's value before the passes of a step have made it. */
 static void mark_required(struct plan *plan, const struct pass *p, bool **written)
 {
     for (uint32_t k = 0; k < p->use.item->props.count; k++) {
@@ -95,7 +95,7 @@ static int find_required(struct plan *plan, struct error *e)
         for (size_t c = 0; pa->initial && c < n; c++)
             pa->initial[c] = INFINITY; /* nobody has said */
     }
-    for (int moment = MOMENT_START; !status && moment <= MOMENT_EVALUATE; moment++)
+    for (int moment = MOMENT_START; !status && moment < MOMENT_COUNT; moment++)
         for (size_t i = 0; i < plan->n_pass; i++)
             if (plan->pass[i].moment == (enum moment)moment)
                 mark_required(plan, &plan->pass[i], written);
@@ -105,7 +105,8 @@ static int find_required(struct plan *plan, struct error *e)
     return status;
 }
 
-static int add_rate(struct plan *plan, struct plan_array *a, const sph_rate *declared, struct error *e)
+static int add_rate(struct plan *plan, struct plan_array *a, const sph_rate *declared,
+                    struct error *e)
 {
     int y = particles_find(&a->p, declared->property);
     int r = particles_find(&a->p, declared->rate);
@@ -176,8 +177,8 @@ int columns_finish(struct plan *plan, struct error *e)
 {
     for (size_t i = 0; i < plan->n_pass; i++) {
         const struct pass *p = &plan->pass[i];
-        /* What is made once must outlive the sorts. */
-        for (uint32_t k = 0; p->moment == MOMENT_START && k < p->use.item->props.count; k++)
+        /* What no evaluation makes anew must outlive the sorts. */
+        for (uint32_t k = 0; p->moment != MOMENT_EVALUATE && k < p->use.item->props.count; k++)
             plan->array[p->dst.array].p.column[p->dst.column[k]].state = true;
         if (p->function && add_rates(plan, &p->function->rates, p->dst.array, e))
             return -1;

@@ -26,7 +26,8 @@ static const char *type_name(uint32_t type)
 static double neighbours(const struct plan *plan, const struct plan_array *a)
 {
     static const double ball[4] = {1.0, 2.0, 3.14159265358979324, 4.18879020478639098};
-    return ball[plan->dim] * pow(plan->kernel.support * plan->reach_scale * a->scene->h_factor, plan->dim);
+    return ball[plan->dim] *
+           pow(plan->kernel.support * plan->reach_scale * a->scene->h_factor, plan->dim);
 }
 
 static uint64_t count(const struct plan *plan, size_t array)
@@ -57,8 +58,8 @@ static void item(struct line *l, const char *word)
     l->any = true;
 }
 
-static void print_access(const struct plan *plan, const struct pass *p, const char *title, uint32_t access,
-                         bool source, FILE *out)
+static void print_access(const struct plan *plan, const struct pass *p, const char *title,
+                         uint32_t access, bool source, FILE *out)
 {
     struct line l = {.out = out, .indent = 17};
     for (uint32_t k = 0; k < p->use.item->props.count; k++) {
@@ -80,7 +81,7 @@ static void print_access(const struct plan *plan, const struct pass *p, const ch
 
 static void print_pass(const struct plan *plan, const struct pass *p, size_t number, FILE *out)
 {
-    const char *shape = p->shape == SPH_POINT ? "point"
+    const char *shape = p->shape == SPH_POINT    ? "point"
                         : p->reach == SPH_GATHER ? "pair, r < support h_i"
                                                  : "pair, r < support max(h_i, h_j)";
     fprintf(out, "  %2zu  %-28s %-9s %s%s\n", number, p->name, moment_name[p->moment], shape,
@@ -96,13 +97,15 @@ static void print_pass(const struct plan *plan, const struct pass *p, size_t num
 static void print_array(const struct plan *plan, size_t index, FILE *out)
 {
     const struct plan_array *a = &plan->array[index];
-    fprintf(out, "  %s: %llu particles, %zu columns, %zu bytes a particle (lists: about %.0f more)\n", a->p.name,
-            (unsigned long long)count(plan, index), a->p.n_column, particles_bytes(&a->p),
-            plan->has_kernel ? 4.0 * (neighbours(plan, a) * 2.0) / SPH_LANES * 2.0 : 0.0);
+    fprintf(
+        out, "  %s: %llu particles, %zu columns, %zu bytes a particle (lists: about %.0f more)\n",
+        a->p.name, (unsigned long long)count(plan, index), a->p.n_column, particles_bytes(&a->p),
+        plan->has_kernel ? 4.0 * (neighbours(plan, a) * 2.0) / SPH_LANES * 2.0 : 0.0);
     for (size_t c = 0; c < a->p.n_column; c++) {
         const struct column *column = &a->p.column[c];
         fprintf(out, "    %-8s %-17s %-6s %-12s %s\n", column->name, type_name(column->type),
-                column->state ? "state" : "", column->unit ? column->unit : "", column->doc ? column->doc : "");
+                column->state ? "state" : "", column->unit ? column->unit : "",
+                column->doc ? column->doc : "");
     }
     for (size_t k = 0; k < a->n_rate; k++)
         fprintf(out, "    %s advances with %s (%s)\n", a->p.column[a->rate[k].property].name,
@@ -143,8 +146,8 @@ static double expected_pairs(const struct plan *plan)
     for (size_t i = 0; i < plan->n_pass; i++) {
         const struct pass *p = &plan->pass[i];
         if (p->shape == SPH_PAIR && p->moment == MOMENT_EVALUATE)
-            pairs += (double)count(plan, p->dst.array) * neighbours(plan, &plan->array[p->dst.array]) *
-                     (p->max_sweeps ? 2.0 : 1.0);
+            pairs += (double)count(plan, p->dst.array) *
+                     neighbours(plan, &plan->array[p->dst.array]) * (p->max_sweeps ? 2.0 : 1.0);
     }
     return pairs * plan->integrator->evaluations;
 }
@@ -153,8 +156,9 @@ void plan_print(const struct plan *plan, FILE *out)
 {
     fprintf(out, "%s\n", plan->scene->title ? plan->scene->title : "untitled");
     fprintf(out, "  scheme %s, kernel %s, integrator %s, %d dimension%s, cfl %g\n",
-            plan->scheme_name ? plan->scheme_name : "none", plan->kernel_name ? plan->kernel_name : "none",
-            plan->integrator->name, plan->dim, plan->dim == 1 ? "" : "s", plan->cfl);
+            plan->scheme_name ? plan->scheme_name : "none",
+            plan->kernel_name ? plan->kernel_name : "none", plan->integrator->name, plan->dim,
+            plan->dim == 1 ? "" : "s", plan->cfl);
     fprintf(out, "arrays\n");
     for (size_t a = 0; a < plan->n_array; a++)
         print_array(plan, a, out);
@@ -166,9 +170,10 @@ void plan_print(const struct plan *plan, FILE *out)
     for (size_t i = 0; i < plan->n_reduction; i++) {
         const sph_reduction *d = plan->reduction[i].declared;
         static const char *const op[] = {"", "minimum", "maximum", "sum"};
-        static const char *const use[] = {"shown in the log", "bounds the time step", "internal energy",
-                                          "potential energy"};
-        fprintf(out, "  %-12s %s of %s: %s\n", d->name, op[d->op & 3u], d->property, use[d->use & 3u]);
+        static const char *const use[] = {"shown in the log", "bounds the time step",
+                                          "internal energy", "potential energy"};
+        fprintf(out, "  %-12s %s of %s: %s\n", d->name, op[d->op & 3u], d->property,
+                use[d->use & 3u]);
     }
     double pairs = expected_pairs(plan);
     fprintf(out, "expected\n  pairs a step     %.3g\n", pairs);

@@ -40,20 +40,28 @@ static int run_inverse(struct plan *plan, struct plan_array *a, struct error *e)
         const sph_prop *prop = list_at(&eos->inverse_props, k);
         int c = particles_find(&a->p, prop->name);
         if (c < 0 || (!(prop->access & SPH_DST_WRITE) && !a->given[c]))
-            status = document_fail(plan->scene->doc, a->scene->node, e,
-                                   "to find the state of \"%s\" from its equation of state, \"fields\" must "
-                                   "give \"%s\" too",
-                                   a->p.name, prop->name);
+            status = document_fail(
+                plan->scene->doc, a->scene->node, e,
+                "to find the state of \"%s\" from its equation of state, \"fields\" must "
+                "give \"%s\" too",
+                a->p.name, prop->name);
         else
             column[k] = particles_column(&a->p, c);
         if (!status && (prop->access & SPH_DST_WRITE))
             a->given[c] = true;
     }
     if (!status) {
-        sph_batch b = {.size = sizeof b, .dim = (uint32_t)plan->dim, .real = SPH_F64,
-                       .lanes = SPH_LANES, .count = a->p.n, .n_dst = a->p.n, .dst = column,
-                       .n_columns = n, .n_params = eos->item->params.count,
-                       .param = a->eos.config.value, .state = a->eos.state,
+        sph_batch b = {.size = sizeof b,
+                       .dim = (uint32_t)plan->dim,
+                       .real = SPH_F64,
+                       .lanes = SPH_LANES,
+                       .count = a->p.n,
+                       .n_dst = a->p.n,
+                       .dst = column,
+                       .n_columns = n,
+                       .n_params = eos->item->params.count,
+                       .param = a->eos.config.value,
+                       .state = a->eos.state,
                        .host = &plan->registry->host};
         sph_status s = eos->inverse(&b);
         char why[512];
@@ -68,19 +76,19 @@ static int run_inverse(struct plan *plan, struct plan_array *a, struct error *e)
 
 static int complete(struct plan *plan, struct plan_array *a, struct error *e)
 {
-    if (a->eos.item && entry_eos(a->eos.entry)->inverse && wants_inverse(a, entry_eos(a->eos.entry)) &&
-        run_inverse(plan, a, e))
+    if (a->eos.item && entry_eos(a->eos.entry)->inverse &&
+        wants_inverse(a, entry_eos(a->eos.entry)) && run_inverse(plan, a, e))
         return -1;
     for (size_t c = 0; c < a->p.n_column; c++) {
-        bool own = (int)c == a->position || (int)c == a->smoothing || (int)c == a->mass ||
-                   (int)c == a->id;
+        bool own =
+            (int)c == a->position || (int)c == a->smoothing || (int)c == a->mass || (int)c == a->id;
         if (!a->required[c] || a->given[c] || own)
             continue;
         const struct column *column = &a->p.column[c];
         if (isnan(a->initial[c]))
             return document_fail(plan->scene->doc, a->scene->node, e,
-                                 "nothing gives the initial \"%s\" (%s): add it to \"fields\"", column->name,
-                                 column->doc);
+                                 "nothing gives the initial \"%s\" (%s): add it to \"fields\"",
+                                 column->name, column->doc);
         if (column->type == SPH_INT32 || column->type == SPH_INT64)
             continue; /* zero */
         for (uint32_t k = 0; k < column->ncomp; k++)

@@ -19,8 +19,9 @@ static int find_scheme(struct plan *plan, struct error *e)
             return plan_unknown(plan, s->scheme.node, KIND_SCHEME, s->scheme.name, e);
         plan->scheme = entry_scheme(entry);
         if (!(plan->scheme->item->dims & (1u << plan->dim)))
-            return document_fail(s->doc, s->scheme.node, e, "the scheme \"%s\" does not work in %d dimensions",
-                                 s->scheme.name, plan->dim);
+            return document_fail(s->doc, s->scheme.node, e,
+                                 "the scheme \"%s\" does not work in %d dimensions", s->scheme.name,
+                                 plan->dim);
         if (isnan(plan->cfl))
             plan->cfl = plan->scheme->cfl;
     }
@@ -32,7 +33,9 @@ static int find_scheme(struct plan *plan, struct error *e)
 static int find_kernel(struct plan *plan, struct error *e)
 {
     const struct scene *s = plan->scene;
-    plan->kernel_name = s->kernel.name ? s->kernel.name : plan->scheme ? plan->scheme->kernel : NULL;
+    plan->kernel_name = s->kernel.name ? s->kernel.name
+                        : plan->scheme ? plan->scheme->kernel
+                                       : NULL;
     if (!plan->kernel_name)
         return 0;
     const cJSON *node = s->kernel.node ? s->kernel.node : s->scheme.node;
@@ -86,7 +89,8 @@ static int check_scheme_members(const struct plan *plan, struct error *e)
         }
         char near[512];
         if (!known)
-            return document_fail(plan->scene->doc, member, e, "the scheme \"%s\" has no parameter \"%s\"%s",
+            return document_fail(plan->scene->doc, member, e,
+                                 "the scheme \"%s\" has no parameter \"%s\"%s",
                                  plan->scheme_name ? plan->scheme_name : "", member->string,
                                  text_suggest(near, sizeof near, member->string, name, n));
     }
@@ -106,8 +110,9 @@ static int bind_exact(struct plan *plan, struct error *e)
             return plan_unknown(plan, c->node, KIND_EXACT, c->exact, e);
         const sph_exact *x = entry_exact(entry);
         if (!(x->item->dims & (1u << plan->dim)))
-            return document_fail(s->doc, c->node, e, "the exact solution \"%s\" is not for %d dimensions",
-                                 c->exact, plan->dim);
+            return document_fail(s->doc, c->node, e,
+                                 "the exact solution \"%s\" is not for %d dimensions", c->exact,
+                                 plan->dim);
         struct use *u = &plan->exact[i];
         if (use_init(u, entry, x->item, x->life, e))
             return -1;
@@ -163,8 +168,8 @@ static int check_property(const struct plan *plan, int array, const char *of, co
         if (p->column[c].output)
             name[n++] = p->column[c].name;
     char near[512];
-    return document_fail(plan->scene->doc, node, e, "array \"%s\" has no property \"%s\"%s", p->name, of,
-                         text_suggest(near, sizeof near, of, name, n));
+    return document_fail(plan->scene->doc, node, e, "array \"%s\" has no property \"%s\"%s",
+                         p->name, of, text_suggest(near, sizeof near, of, name, n));
 }
 
 static int check_reports(const struct plan *plan, struct error *e)

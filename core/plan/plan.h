@@ -26,13 +26,13 @@ struct use {
 struct step {
     char *name;
     enum moment moment;
-    enum kind kind;         /* KIND_FUNCTION or KIND_EOS (the material's own) */
-    const cJSON *node;      /* the edit that put it there, or NULL */
-    const cJSON *params;    /* its own parameters, or NULL */
-    const char **to, **from; /* not owned */
-    size_t n_to, n_from;    /* 0: all */
+    enum kind kind;             /* KIND_FUNCTION or KIND_EOS (the material's own) */
+    const cJSON *node;          /* the edit that put it there, or NULL */
+    const cJSON *params;        /* its own parameters, or NULL */
+    const char **to, **from;    /* not owned */
+    size_t n_to, n_from;        /* 0: all */
     const char *operation, *of; /* what the scene says it is; checked; or NULL */
-    const char *expression; /* assigned to `of`; NULL: a function */
+    const char *expression;     /* assigned to `of`; NULL: a function */
 };
 
 /* The columns of a pass in one array, in the item's declared order. */
@@ -43,22 +43,22 @@ struct binding {
 
 /* One function (or equation of state) on one destination array, over all its sources. */
 struct pass {
-    char *name;            /* "density(fluid)" */
+    char *name; /* "density(fluid)" */
     const char *step;
     enum moment moment;
     struct use use;
-    uint32_t shape;        /* SPH_POINT or SPH_PAIR */
+    uint32_t shape; /* SPH_POINT or SPH_PAIR */
     sph_range_fn before, run, after;
     uint32_t reach;
     uint32_t max_sweeps;
-    int unfinished;        /* column of the destination, or -1 */
+    int unfinished;               /* column of the destination, or -1 */
     const sph_function *function; /* NULL for an equation of state */
     struct binding dst;
     struct binding *src;
     size_t n_src;
     struct assignment *assignment; /* of an expression, or NULL */
-    bool serial;           /* one thread only */
-    sph_column *space;     /* room for the columns of a batch: destination's, then source's */
+    bool serial;                   /* one thread only */
+    sph_column *space; /* room for the columns of a batch: destination's, then source's */
     /* Cost, filled in by the run. */
     double seconds;
     uint64_t sweeps, pairs;
@@ -67,7 +67,7 @@ struct pass {
 /* A rate of an array: column y advances with column r. */
 struct rate {
     int property, rate;
-    uint32_t kind;         /* SPH_KICK or SPH_DRIFT */
+    uint32_t kind; /* SPH_KICK or SPH_DRIFT */
 };
 
 /* A global reduction of a pass's column. */
@@ -82,11 +82,12 @@ struct plan_array {
     const struct scene_array *scene;
     struct rate *rate;
     size_t n_rate;
-    bool *given;           /* per column: set by a field */
-    bool *required;        /* per column: an initial value is needed */
-    double *initial;       /* per column: declared default; NaN: none */
-    struct use eos;        /* of its material; entry NULL: none */
-    int position, velocity, smoothing, mass, id; /* columns; velocity: the rate of the position, or -1 */
+    bool *given;     /* per column: set by a field */
+    bool *required;  /* per column: an initial value is needed */
+    double *initial; /* per column: declared default; NaN: none */
+    struct use eos;  /* of its material; entry NULL: none */
+    int position, velocity, smoothing, mass,
+        id; /* columns; velocity: the rate of the position, or -1 */
 };
 
 struct plan {
@@ -107,9 +108,9 @@ struct plan {
     size_t n_pass;
     struct reduction *reduction;
     size_t n_reduction;
-    uint32_t *pair;        /* [dst * n_array + src]: 0 no function asks, SPH_GATHER, SPH_SYMMETRIC */
-    double reach_scale;    /* largest over the functions */
-    struct use *exact;     /* of scene.compare, one each */
+    uint32_t *pair;     /* [dst * n_array + src]: 0 no function asks, SPH_GATHER, SPH_SYMMETRIC */
+    double reach_scale; /* largest over the functions */
+    struct use *exact;  /* of scene.compare, one each */
 };
 
 /* Resolves every name, checks every parameter, adds every column. guarded: for the audit. Particles are

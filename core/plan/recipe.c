@@ -36,12 +36,13 @@ int plan_unknown(const struct plan *plan, const cJSON *node, enum kind kind, con
     size_t n = 0;
     const char **known = registry_names(plan->registry, kind, &n);
     if (n == 0)
-        snprintf(near, sizeof near, "; no plugin that is loaded has any: use --load or \"plugins\"");
+        snprintf(near, sizeof near,
+                 "; no plugin that is loaded has any: use --load or \"plugins\"");
     else
         text_suggest(near, sizeof near, name, known, n);
     free(known);
-    return document_fail(plan->scene->doc, node, e, "no %s \"%s\" is registered%s", kind_label[kind],
-                         name, near);
+    return document_fail(plan->scene->doc, node, e, "no %s \"%s\" is registered%s",
+                         kind_label[kind], name, near);
 }
 
 static int moment_find(const char *at)
@@ -116,32 +117,36 @@ static int edit_target(const struct plan *plan, const struct scene_edit *edit, s
 static int recipe_edit(struct plan *plan, const struct scene_edit *edit, struct error *e)
 {
     size_t index = plan->n_step;
+    enum moment moment = MOMENT_EVALUATE;
     if (edit->kind != EDIT_APPEND) {
         int at = edit_target(plan, edit, e);
         if (at < 0)
             return -1;
+        moment = plan->step[at].moment;
         index = (size_t)at + (edit->kind == EDIT_INSERT_AFTER ? 1u : 0u);
     }
-    enum moment moment = index < plan->n_step ? plan->step[index].moment : MOMENT_EVALUATE;
     if (edit->kind == EDIT_DELETE || edit->kind == EDIT_REPLACE)
         step_delete(plan, index);
     if (edit->kind == EDIT_DELETE)
         return 0;
     if (!edit->function && !(edit->expression && edit->of))
-        return document_fail(plan->scene->doc, edit->node, e,
-                             "an operation needs \"function\", the name of a registered function, or "
-                             "\"of\" and \"expression\"");
+        return document_fail(
+            plan->scene->doc, edit->node, e,
+            "an operation needs \"function\", the name of a registered function, or "
+            "\"of\" and \"expression\"");
     struct step *s = step_insert(plan, index, e);
     if (!s)
         return -1;
     bool eos = edit->function && strcmp(edit->function, "eos") == 0;
     s->kind = eos ? KIND_EOS : KIND_FUNCTION;
     s->moment = moment;
-    if (edit->at) {
+    /* The scene fills in a default; beside an anchor, the anchor's moment is the better one. */
+    if (edit->at && (edit->kind == EDIT_APPEND || json_get(edit->node, "at"))) {
         int k = moment_find(edit->at);
         if (k < 0)
             return document_fail(plan->scene->doc, edit->node, e,
-                                 "\"at\" is \"%s\"; it must be start, evaluate or finish", edit->at);
+                                 "\"at\" is \"%s\"; it must be start, evaluate or finish",
+                                 edit->at);
         s->moment = (enum moment)k;
     }
     s->node = edit->node;

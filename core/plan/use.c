@@ -30,7 +30,8 @@ int use_set(struct use *u, const struct document *d, const cJSON *member, struct
     else if (cJSON_IsString(member))
         status = config_set(&u->config, member->string, NAN, member->valuestring, &inner);
     else if (cJSON_IsBool(member))
-        status = config_set(&u->config, member->string, cJSON_IsTrue(member) ? 1.0 : 0.0, NULL, &inner);
+        status =
+            config_set(&u->config, member->string, cJSON_IsTrue(member) ? 1.0 : 0.0, NULL, &inner);
     else
         return document_fail(d, member, e, "a parameter is a number or a word");
     if (status)
@@ -53,7 +54,8 @@ int use_set_all(struct use *u, const struct document *d, const cJSON *members, s
         size_t n = 0;
         for (uint32_t k = 0; k < u->item->params.count && n < 64; k++)
             name[n++] = ((const sph_param *)list_at(&u->item->params, k))->name;
-        return document_fail(d, member, e, "%s has no parameter \"%s\"%s", u->item->name, member->string,
+        return document_fail(d, member, e, "%s has no parameter \"%s\"%s", u->item->name,
+                             member->string,
                              text_suggest(near, sizeof near, member->string, name, n));
     }
     return 0;

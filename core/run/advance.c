@@ -19,8 +19,8 @@ static int saved(const struct particles *p, int column)
 }
 
 /* y = base + a * (r - r0); base is y itself or what was saved of it, r0 may be NULL. */
-static void combine(const struct run *r, double *y, const double *base, double a, const double *rate,
-                    const double *rate0, size_t n)
+static void combine(const struct run *r, double *y, const double *base, double a,
+                    const double *rate, const double *rate0, size_t n)
 {
     const long end = (long)n;
     if (rate0) {
@@ -40,7 +40,8 @@ static void copy(double *to, const double *from, size_t n)
         to[i] = from[i];
 }
 
-static void apply(const struct run *r, const struct op *op, const struct plan_array *a, const struct rate *q)
+static void apply(const struct run *r, const struct op *op, const struct plan_array *a,
+                  const struct rate *q)
 {
     const struct particles *p = &a->p;
     bool drifts = q->kind == SPH_DRIFT;

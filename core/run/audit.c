@@ -99,7 +99,8 @@ void audit_begin(struct run *r, const struct pass *p)
             continue;
         for (uint32_t c = 0; c < column->ncomp; c++)
             for (size_t i = 0; i < dst->n; i++)
-                memcpy((char *)column->data + (c * column->plane + i) * sizeof mark, &mark, sizeof mark);
+                memcpy((char *)column->data + (c * column->plane + i) * sizeof mark, &mark,
+                       sizeof mark);
     }
     r->audit->pass = p;
     for (size_t a = 0; a < r->plan->n_array; a++) {
@@ -137,10 +138,11 @@ int audit_end(struct run *r, const struct pass *p, struct error *e)
             for (size_t i = 0; i < dst->n; i++)
                 if (memcmp((char *)column->data + (c * column->plane + i) * sizeof mark, &mark,
                            sizeof mark) == 0)
-                    return error_set(e, EXIT_RUN,
-                                     "audit: %s declares that it writes \"%s\" but left particle %zu "
-                                     "of array \"%s\" unset",
-                                     p->name, column->name, i, dst->name);
+                    return error_set(
+                        e, EXIT_RUN,
+                        "audit: %s declares that it writes \"%s\" but left particle %zu "
+                        "of array \"%s\" unset",
+                        p->name, column->name, i, dst->name);
     }
     return 0;
 }

@@ -43,15 +43,16 @@ static bool wanted(const struct scene_compare *c, const char *name)
 }
 
 /* Columns for the exact solution's batch: the array's own where it reads, fresh ones where it writes. */
-static int exact_columns(const struct plan_array *a, const sph_item *item, sph_column *column, struct error *e)
+static int exact_columns(const struct plan_array *a, const sph_item *item, sph_column *column,
+                         struct error *e)
 {
     for (uint32_t k = 0; k < item->props.count; k++) {
         const sph_prop *prop = list_at(&item->props, k);
         if (!(prop->access & SPH_DST_WRITE)) {
             int c = particles_find(&a->p, prop->name);
             if (c < 0)
-                return error_set(e, EXIT_USAGE, "%s needs \"%s\", which array \"%s\" has not", item->name,
-                                 prop->name, a->p.name);
+                return error_set(e, EXIT_USAGE, "%s needs \"%s\", which array \"%s\" has not",
+                                 item->name, prop->name, a->p.name);
             column[k] = particles_column(&a->p, c);
             continue;
         }
@@ -66,8 +67,9 @@ static int exact_columns(const struct plan_array *a, const sph_item *item, sph_c
     return 0;
 }
 
-static int add_error(struct summary_error **out, size_t *n, const struct plan_array *a, const struct column *f,
-                     const char *reference, const sph_column *exact, const bool *inside, struct error *e)
+static int add_error(struct summary_error **out, size_t *n, const struct plan_array *a,
+                     const struct column *f, const char *reference, const sph_column *exact,
+                     const bool *inside, struct error *e)
 {
     struct summary_error *bigger = realloc(*out, (*n + 1) * sizeof *bigger);
     if (!bigger)
@@ -82,7 +84,8 @@ static int add_error(struct summary_error **out, size_t *n, const struct plan_ar
     return 0;
 }
 
-static int compare(const struct run *r, size_t index, struct summary_error **out, size_t *n, struct error *e)
+static int compare(const struct run *r, size_t index, struct summary_error **out, size_t *n,
+                   struct error *e)
 {
     const struct plan *plan = r->plan;
     const struct scene_compare *c = &plan->scene->compare[index];
@@ -98,12 +101,23 @@ static int compare(const struct run *r, size_t index, struct summary_error **out
     bool *inside = calloc(a->p.n, sizeof *inside);
     int status = column && inside ? 0 : error_memory(e, "a comparison", a->p.n);
     if (!status)
-        status = exact_columns(a, use->item, column, e) || region_select(a, c->where, inside, e) ? -1 : 0;
+        status = exact_columns(a, use->item, column, e) || region_select(a, c->where, inside, e)
+                     ? -1
+                     : 0;
     if (!status) {
-        sph_batch b = {.size = sizeof b, .dim = (uint32_t)plan->dim, .real = SPH_F64, .lanes = SPH_LANES,
-                       .count = a->p.n, .n_dst = a->p.n, .dst = column, .n_columns = count,
-                       .n_params = use->item->params.count, .param = use->config.value,
-                       .state = use->state, .time = r->time, .step = r->step,
+        sph_batch b = {.size = sizeof b,
+                       .dim = (uint32_t)plan->dim,
+                       .real = SPH_F64,
+                       .lanes = SPH_LANES,
+                       .count = a->p.n,
+                       .n_dst = a->p.n,
+                       .dst = column,
+                       .n_columns = count,
+                       .n_params = use->item->params.count,
+                       .param = use->config.value,
+                       .state = use->state,
+                       .time = r->time,
+                       .step = r->step,
                        .host = &plan->registry->host};
         sph_status s = entry_exact(use->entry)->run(&b);
         char why[512];

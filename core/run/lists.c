@@ -49,9 +49,9 @@ static double largest_displacement(const struct run *r)
                 double d = position(pa, c)[i] - r->reference[a][(size_t)c * n + i];
                 d2 += d * d;
             }
-            /* A NaN must not pass for "has not moved". */
-            if (!(d2 <= d2max))
-                d2max = d2;
+            if (isnan(d2))
+                return NAN; /* must not pass for "has not moved", nor be forgotten at the next particle */
+            d2max = fmax(d2max, d2);
         }
     }
     return sqrt(d2max);

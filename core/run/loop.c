@@ -23,7 +23,7 @@ struct loop {
     struct totals first, last;
     double energy_drift, momentum_drift[3], angular_drift[3];
     double begin, end, started;
-    double full;        /* the last step's dt before it was cut to end on time */
+    double full; /* the last step's dt before it was cut to end on time */
     uint64_t max_steps, snapshots, next_output;
     double next_log;
     bool momentum_free; /* nothing bounds the domain, so momentum is conserved */
@@ -57,6 +57,22 @@ static void watch(struct loop *l)
     }
 }
 
+/* Arrays share a function, and with it the names of its reductions: one column of the log for all. */
+static void merge(const sph_reduction *d, double value, const char **name, double *all, size_t *n)
+{
+    size_t k = 0;
+    while (k < *n && strcmp(name[k], d->name) != 0)
+        k++;
+    if (k == *n) {
+        name[k] = d->name;
+        all[(*n)++] = value;
+    } else if (d->op == SPH_REDUCE_SUM || isnan(all[k]) || isnan(value)) {
+        all[k] += value; /* a NaN comes through */
+    } else {
+        all[k] = d->op == SPH_REDUCE_MIN ? fmin(all[k], value) : fmax(all[k], value);
+    }
+}
+
 static int write_log(struct loop *l, struct error *e)
 {
     const struct run *r = &l->run;
@@ -69,16 +85,20 @@ static int write_log(struct loop *l, struct error *e)
         return error_memory(e, "a row of the log", n * sizeof *value);
     }
     size_t used = 0;
-    for (size_t i = 0; i < n; i++) {
-        if (r->plan->reduction[i].declared->use != SPH_USE_NONE)
-            continue;
-        name[used] = r->plan->reduction[i].declared->name;
-        value[used++] = r->reduced[i];
-    }
+    for (size_t i = 0; i < n; i++)
+        if (r->plan->reduction[i].declared->use == SPH_USE_NONE)
+            merge(r->plan->reduction[i].declared, r->reduced[i], name, value, &used);
     const struct totals *t = &l->last;
-    struct log_row row = {.step = r->step, .time = r->time, .dt = r->dt, .kinetic = t->kinetic,
-                          .internal = t->internal, .potential = t->potential, .mass = t->mass,
-                          .extra_name = name, .extra = value, .n_extra = used,
+    struct log_row row = {.step = r->step,
+                          .time = r->time,
+                          .dt = r->dt,
+                          .kinetic = t->kinetic,
+                          .internal = t->internal,
+                          .potential = t->potential,
+                          .mass = t->mass,
+                          .extra_name = name,
+                          .extra = value,
+                          .n_extra = used,
                           .wall = omp_get_wtime() - l->started};
     memcpy(row.momentum, t->momentum, sizeof row.momentum);
     memcpy(row.angular, t->angular, sizeof row.angular);
@@ -100,9 +120,13 @@ static int write_snapshot(struct loop *l, struct error *e)
     if (!status) {
         for (size_t a = 0; a < plan->n_array; a++)
             all[a] = plan->array[a].p;
-        struct snapshot_meta meta = {.scene_path = l->options->scene_path, .scene_text = l->scene_text,
-                                     .title = l->scene->title, .units = l->scene->units,
-                                     .version = PACKAGE_VERSION, .time = l->run.time, .step = l->run.step};
+        struct snapshot_meta meta = {.scene_path = l->options->scene_path,
+                                     .scene_text = l->scene_text,
+                                     .title = l->scene->title,
+                                     .units = l->scene->units,
+                                     .version = PACKAGE_VERSION,
+                                     .time = l->run.time,
+                                     .step = l->run.step};
         status = snapshot_write(temporary, all, plan->n_array, &meta, e);
         if (!status)
             status = output_commit(l->out, temporary, name, e);
@@ -119,7 +143,8 @@ static double target(const struct loop *l)
 {
     double every = l->scene->output.every;
     double next = isfinite(every) ? l->begin + (double)l->next_output * every : INFINITY;
-    return fmin(next, l->end);
+    /* 3 * 0.3 is a rounding short of 0.9: that is the end, not a step of its own before it. */
+    return next < l->end - 1e-9 * every ? next : l->end;
 }
 
 /* From one step to the next dt grows by no more than GROWTH, and the first is a part of what the bound allows: the
@@ -132,10 +157,14 @@ static int choose_dt(struct loop *l, double *dt, struct error *e)
 {
     struct run *r = &l->run;
     double full = isnan(l->scene->time.dt) ? r->plan->cfl * r->dt_bound : l->scene->time.dt;
+    if (isnan(full))
+        return error_set(e, EXIT_RUN, "the time step is no longer a number at step %llu, t = %g",
+                         (unsigned long long)r->step, r->time);
     full = fmin(full, l->scene->time.dt_max);
     if (!(full < INFINITY) && full > 0.0)
-        return error_set(e, EXIT_USAGE,
-                         "no function of the scene bounds the time step: give \"dt\" or \"dt_max\" in \"time\"");
+        return error_set(
+            e, EXIT_USAGE,
+            "no function of the scene bounds the time step: give \"dt\" or \"dt_max\" in \"time\"");
     if (isnan(l->scene->time.dt))
         full = r->step == 0 ? FIRST * full : fmin(full, GROWTH * l->full);
     l->full = full;
@@ -150,7 +179,8 @@ static int choose_dt(struct loop *l, double *dt, struct error *e)
 
 static bool finished(const struct loop *l)
 {
-    return !(l->run.time < l->end) || l->run.step >= l->max_steps || (l->options->stop && *l->options->stop);
+    return !(l->run.time < l->end) || l->run.step >= l->max_steps ||
+           (l->options->stop && *l->options->stop);
 }
 
 static uint64_t particles_total(const struct plan *plan)
@@ -183,7 +213,9 @@ static int after_step(struct loop *l, struct error *e)
 {
     struct run *r = &l->run;
     bool last = finished(l);
-    bool by_steps = l->scene->output.log_steps && r->step % l->scene->output.log_steps == 0;
+    /* "every" takes the place of "steps", whose default stands beside it. */
+    bool by_steps = !isfinite(l->scene->output.log_every) && l->scene->output.log_steps &&
+                    r->step % l->scene->output.log_steps == 0;
     bool by_time = r->time >= l->next_log;
     watch(l);
     if (!isfinite(energy(&l->last)))
@@ -211,7 +243,8 @@ static int steps(struct loop *l, struct error *e)
     run_totals(r, &l->first);
     watch(l);
     l->next_output = 1;
-    l->next_log = isfinite(l->scene->output.log_every) ? l->begin + l->scene->output.log_every : INFINITY;
+    l->next_log =
+        isfinite(l->scene->output.log_every) ? l->begin + l->scene->output.log_every : INFINITY;
     if (write_log(l, e) || write_snapshot(l, e))
         return -1;
     while (!finished(l))
@@ -299,11 +332,12 @@ static int parts_make(const struct loop *l, struct summary_parts *q, bool good, 
         q->count[a] = plan->array[a].p.n;
     }
     for (size_t i = 0; i < plan->n_pass; i++)
-        q->pass[i] = (struct summary_pass){plan->pass[i].name, plan->pass[i].seconds, plan->pass[i].pairs,
-                                           plan->pass[i].sweeps};
+        q->pass[i] = (struct summary_pass){plan->pass[i].name, plan->pass[i].seconds,
+                                           plan->pass[i].pairs, plan->pass[i].sweeps};
     for (size_t i = 0; i < plan->registry->n_plugin; i++) {
         const struct plugin *p = &plan->registry->plugin[i];
-        q->plugin[i] = (struct summary_plugin){p->name, p->version, p->path, p->abi_major, p->abi_minor};
+        q->plugin[i] =
+            (struct summary_plugin){p->name, p->version, p->path, p->abi_major, p->abi_minor};
     }
     if (!good)
         return 0;
@@ -332,14 +366,31 @@ static int summarise(struct loop *l, const char *status, const char *reason, str
     }
     struct rusage usage;
     getrusage(RUSAGE_SELF, &usage);
-    struct summary s = {.status = status, .scene = l->options->scene_path, .title = l->scene->title,
-                        .reason = reason, .n_array = r->plan->n_array, .array_name = q.name, .array_n = q.count,
-                        .steps = r->step, .time = r->time, .error = q.error, .n_error = q.n_error,
-                        .probe = q.probe, .n_probe = q.n_probe, .energy_drift = l->energy_drift,
-                        .mass_drift = l->first.mass > 0.0 ? l->last.mass / l->first.mass - 1.0 : 0.0,
-                        .dim = r->plan->dim, .pass = q.pass, .n_pass = r->plan->n_pass, .plan = q.plan,
-                        .plugin = q.plugin, .n_plugin = r->plan->registry->n_plugin, .threads = r->threads,
-                        .ranks = 1, .picture = l->picture};
+    struct summary s = {.status = status,
+                        .scene = l->options->scene_path,
+                        .title = l->scene->title,
+                        .reason = reason,
+                        .n_array = r->plan->n_array,
+                        .array_name = q.name,
+                        .array_n = q.count,
+                        .steps = r->step,
+                        .time = r->time,
+                        .error = q.error,
+                        .n_error = q.n_error,
+                        .probe = q.probe,
+                        .n_probe = q.n_probe,
+                        .energy_drift = l->energy_drift,
+                        .mass_drift =
+                            l->first.mass > 0.0 ? l->last.mass / l->first.mass - 1.0 : 0.0,
+                        .dim = r->plan->dim,
+                        .pass = q.pass,
+                        .n_pass = r->plan->n_pass,
+                        .plan = q.plan,
+                        .plugin = q.plugin,
+                        .n_plugin = r->plan->registry->n_plugin,
+                        .threads = r->threads,
+                        .ranks = 1,
+                        .picture = l->picture};
     memcpy(s.momentum_drift, l->momentum_drift, sizeof s.momentum_drift);
     memcpy(s.angular_drift, l->angular_drift, sizeof s.angular_drift);
     s.cost.wall = omp_get_wtime() - l->started;
@@ -387,7 +438,8 @@ static void keep_failed(struct loop *l, const struct error *e)
     summarise(l, "failed", e->text, &ignored);
 }
 
-int loop_run(struct plan *plan, const struct output *out, const struct loop_options *o, struct error *e)
+int loop_run(struct plan *plan, const struct output *out, const struct loop_options *o,
+             struct error *e)
 {
     struct loop l = {.options = o, .out = out, .scene = plan->scene};
     int status = loop_begin(&l, plan, e);

@@ -7,10 +7,10 @@
 
 struct loop_options {
     const char *scene_path;
-    double until;      /* NaN: the scene's end */
-    uint64_t steps;    /* UINT64_MAX: no bound but the scene's */
-    bool progress;     /* show it if stderr is a terminal */
-    bool table;        /* print the table at the end on stdout */
+    double until;   /* NaN: the scene's end */
+    uint64_t steps; /* UINT64_MAX: no bound but the scene's */
+    bool progress;  /* show it if stderr is a terminal */
+    bool table;     /* print the table at the end on stdout */
     bool audit;
     int threads;
     const volatile int *stop; /* set by a signal: end after this step */
@@ -18,6 +18,7 @@ struct loop_options {
 
 /* Runs to the end and writes everything. On failure what was written stays good, the last state is kept as a
  * snapshot, and summary.json tells the reason. */
-int loop_run(struct plan *plan, const struct output *out, const struct loop_options *o, struct error *e);
+int loop_run(struct plan *plan, const struct output *out, const struct loop_options *o,
+             struct error *e);
 
 #endif

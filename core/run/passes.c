@@ -51,7 +51,8 @@ static int ranges_all(struct ranges *a, uint64_t n, struct error *e)
 }
 
 /* The groups with an unfinished destination, neighbours joined up to a chunk. */
-static int ranges_unfinished(struct ranges *a, const int32_t *unfinished, uint64_t n, struct error *e)
+static int ranges_unfinished(struct ranges *a, const int32_t *unfinished, uint64_t n,
+                             struct error *e)
 {
     a->n = 0;
     for (uint64_t g = 0; g < n; g += SPH_LANES) {
@@ -61,7 +62,8 @@ static int ranges_unfinished(struct ranges *a, const int32_t *unfinished, uint64
             any = any || unfinished[i];
         if (!any)
             continue;
-        bool joins = a->n && a->first[a->n - 1] + a->count[a->n - 1] == g && a->count[a->n - 1] < CHUNK;
+        bool joins =
+            a->n && a->first[a->n - 1] + a->count[a->n - 1] == g && a->count[a->n - 1] < CHUNK;
         if (joins)
             a->count[a->n - 1] += end - g;
         else if (ranges_add(a, g, end - g, e))
@@ -75,7 +77,7 @@ static int call(struct run *r, const struct pass *p, sph_range_fn f, const sph_b
 {
     sph_status worst = SPH_OK;
     const long n = (long)ranges->n;
-    const int threads = p->serial ? 1 : r->threads;
+    const int threads = p->serial || n < 2 ? 1 : r->threads;
 #pragma omp parallel for schedule(dynamic) num_threads(threads)
     for (long k = 0; k < n; k++) {
         sph_batch b = *batch;
@@ -92,11 +94,12 @@ static int call(struct run *r, const struct pass *p, sph_range_fn f, const sph_b
         return 0;
     char why[512];
     registry_reason(r->plan->registry, worst, why, sizeof why);
-    return error_set(e, EXIT_RUN, "%s at step %llu, t = %g: %s", p->name, (unsigned long long)r->step,
-                     r->time, why);
+    return error_set(e, EXIT_RUN, "%s at step %llu, t = %g: %s", p->name,
+                     (unsigned long long)r->step, r->time, why);
 }
 
-static void reset_accumulators(const struct run *r, const struct pass *p, const struct ranges *ranges)
+static void reset_accumulators(const struct run *r, const struct pass *p,
+                               const struct ranges *ranges)
 {
     const struct particles *particles = &r->plan->array[p->dst.array].p;
     for (uint32_t k = 0; k < p->use.item->props.count; k++) {
@@ -111,7 +114,8 @@ static void reset_accumulators(const struct run *r, const struct pass *p, const 
     }
 }
 
-static void columns_of(const struct run *r, const struct pass *p, const struct binding *b, sph_column *out)
+static void columns_of(const struct run *r, const struct pass *p, const struct binding *b,
+                       sph_column *out)
 {
     for (uint32_t k = 0; k < p->use.item->props.count; k++)
         out[k] = b->column[k] < 0 ? (sph_column){0}
@@ -143,7 +147,8 @@ static void batch_begin(const struct run *r, const struct pass *p, sph_batch *b,
     }
 }
 
-static void batch_source(const struct run *r, const struct pass *p, size_t s, sph_batch *b, sph_column *src)
+static void batch_source(const struct run *r, const struct pass *p, size_t s, sph_batch *b,
+                         sph_column *src)
 {
     const struct plan *plan = r->plan;
     const struct plan_array *from = &plan->array[p->src[s].array];
@@ -273,7 +278,7 @@ static double reduce(const struct plan *plan, const struct reduction *d)
 
 int run_passes(struct run *r, enum moment moment, struct error *e)
 {
-    if (moment == MOMENT_EVALUATE && run_lists(r, false, e))
+    if (moment != MOMENT_FINISH && run_lists(r, false, e))
         return -1;
     for (size_t i = 0; i < r->plan->n_pass; i++) {
         if (r->plan->pass[i].moment != moment)
@@ -287,8 +292,8 @@ int run_passes(struct run *r, enum moment moment, struct error *e)
     for (size_t i = 0; i < r->plan->n_reduction; i++) {
         const struct reduction *d = &r->plan->reduction[i];
         r->reduced[i] = reduce(r->plan, d);
-        if (d->declared->use == SPH_USE_TIME_STEP && !(r->reduced[i] >= r->dt_bound))
-            r->dt_bound = r->reduced[i];
+        if (d->declared->use == SPH_USE_TIME_STEP && !isnan(r->dt_bound) && !(r->reduced[i] >= r->dt_bound))
+            r->dt_bound = r->reduced[i]; /* a NaN stays */
     }
     return 0;
 }

@@ -34,12 +34,14 @@ static double radius(const struct plan_array *a, size_t i)
 {
     double r2 = 0.0;
     for (int c = 0; c < a->p.dim; c++)
-        r2 += region_value(&a->p.column[a->position], (uint32_t)c, i) * region_value(&a->p.column[a->position], (uint32_t)c, i);
+        r2 += region_value(&a->p.column[a->position], (uint32_t)c, i) *
+              region_value(&a->p.column[a->position], (uint32_t)c, i);
     return sqrt(r2);
 }
 
 /* From outside inwards: the radius at which the shells' means reach the level, between two shells' middles. */
-static double crossing(const struct plan_array *a, const struct scene_probe *p, const bool *inside, struct error *e)
+static double crossing(const struct plan_array *a, const struct scene_probe *p, const bool *inside,
+                       struct error *e)
 {
     double far = 0.0;
     for (size_t i = 0; i < a->p.n; i++)
@@ -78,7 +80,8 @@ static double crossing(const struct plan_array *a, const struct scene_probe *p, 
     return found;
 }
 
-static double probe(const struct plan_array *a, const struct scene_probe *p, const bool *inside, struct error *e)
+static double probe(const struct plan_array *a, const struct scene_probe *p, const bool *inside,
+                    struct error *e)
 {
     if (p->kind == PROBE_CROSSING)
         return crossing(a, p, inside, e);

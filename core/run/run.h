@@ -29,16 +29,17 @@ struct run {
     double time, dt, dt_bound; /* dt_bound: what the reductions allow, before cfl */
     uint64_t step;
     /* lists.c */
-    struct ghosts *ghosts;     /* [array] */
-    struct group_list *list;   /* [dst * n_array + src] */
-    double **reference;        /* [array]: dim + 1 planes of positions and h when the lists were made */
+    struct ghosts *ghosts;   /* [array] */
+    struct group_list *list; /* [dst * n_array + src] */
+    double **reference; /* [array]: dim + 1 planes of positions and h when the lists were made */
     size_t *reference_n;
-    bool **stale;              /* [array][column]: ghosts hold old values */
-    bool lists_made, lists_suspect; /* suspect: something moved or grew since they were last checked */
+    bool **stale; /* [array][column]: ghosts hold old values */
+    bool lists_made,
+        lists_suspect; /* suspect: something moved or grew since they were last checked */
     uint64_t builds_since_sort;
-    double *reduced;           /* [reduction]: last value */
+    double *reduced; /* [reduction]: last value */
     struct run_cost cost;
-    struct audit *audit;       /* NULL: off */
+    struct audit *audit; /* NULL: off */
 };
 
 int run_init(struct run *r, struct plan *plan, int threads, bool audit, struct error *e);

@@ -11,9 +11,11 @@ static void add_array(const struct plan_array *a, int dim, struct totals *t)
     for (size_t i = 0; i < p->n; i++) {
         double x[3] = {0.0, 0.0, 0.0}, v[3] = {0.0, 0.0, 0.0}, v2 = 0.0, x2 = 0.0;
         for (int c = 0; c < dim; c++) {
-            x[c] = ((double *)p->column[a->position].data)[(size_t)c * p->column[a->position].plane + i];
+            x[c] = ((double *)p->column[a->position]
+                        .data)[(size_t)c * p->column[a->position].plane + i];
             if (a->velocity >= 0)
-                v[c] = ((double *)p->column[a->velocity].data)[(size_t)c * p->column[a->velocity].plane + i];
+                v[c] = ((double *)p->column[a->velocity]
+                            .data)[(size_t)c * p->column[a->velocity].plane + i];
             v2 += v[c] * v[c];
             x2 += x[c] * x[c];
         }
@@ -22,7 +24,8 @@ static void add_array(const struct plan_array *a, int dim, struct totals *t)
         for (int c = 0; c < 3; c++)
             mv[c] += m[i] * v[c];
         for (int c = 0; c < 3; c++)
-            t->angular[c] += m[i] * (x[(c + 1) % 3] * v[(c + 2) % 3] - x[(c + 2) % 3] * v[(c + 1) % 3]);
+            t->angular[c] +=
+                m[i] * (x[(c + 1) % 3] * v[(c + 2) % 3] - x[(c + 2) % 3] * v[(c + 1) % 3]);
         t->momentum_scale += m[i] * sqrt(v2);
         t->angular_scale += m[i] * sqrt(v2 * x2);
     }

@@ -334,34 +334,73 @@ static int set_columns(struct particles *p, const struct scene *s, size_t a, con
     return status;
 }
 
-/* Between the fills of one array. */
+/* "(1, 2)" of particle i. */
+static const char *place_text(const struct near_cloud *c, size_t i, char *out, size_t size)
+{
+    if (c->dim == 1)
+        snprintf(out, size, "x = %.6g", c->x[0][i]);
+    else if (c->dim == 2)
+        snprintf(out, size, "(%.6g, %.6g)", c->x[0][i], c->x[1][i]);
+    else
+        snprintf(out, size, "(%.6g, %.6g, %.6g)", c->x[0][i], c->x[1][i], c->x[2][i]);
+    return out;
+}
+
+/* Two particles of a file in the same place. `all` is the whole array; group is overwritten. */
+static int check_twins(const struct scene *s, const struct scene_fill *f,
+                       const struct near_cloud *all, size_t first, size_t end, uint32_t *group,
+                       struct error *e)
+{
+    struct near_cloud cloud = {.dim = all->dim,
+                               .near = NEAR_SAME,
+                               .n = end - first,
+                               .spacing = all->spacing + first,
+                               .group = group + first};
+    size_t i, j;
+    bool found;
+    char where[80];
+    for (int c = 0; c < all->dim; c++)
+        cloud.x[c] = all->x[c] + first;
+    for (i = first; i < end; i++)
+        group[i] = (uint32_t)(i - first); /* each its own */
+    if (near_pair(&cloud, &found, &i, &j, e) < 0)
+        return -1;
+    if (!found)
+        return 0;
+    return document_fail(s->doc, json_get(f->node, "file"), e,
+                         "particles %zu and %zu of the file stand in the same place, %s", i + 1,
+                         j + 1, place_text(&cloud, i, where, sizeof where));
+}
+
+/* Between the fills of one array, and between the particles of a file. */
 static int check_fills(const struct particles *p, const struct scene *s, size_t a,
                        const size_t *first, const double *spacing, struct error *e)
 {
     const struct scene_array *array = &s->array[a];
-    size_t i, j;
-    bool found;
-    if (array->n_fill < 2)
-        return 0;
+    size_t i = 0, j = 0, k = 0;
+    bool found = false;
     uint32_t *group = calloc(p->n + 1, sizeof *group);
     if (!group)
         return error_memory(e, "the search for overlaps", p->n * sizeof *group);
-    for (size_t k = 0; k < array->n_fill; k++)
-        for (i = first[k]; i < first[k + 1]; i++)
-            group[i] = (uint32_t)k;
-    struct near_cloud cloud = {.dim = s->dim, .n = p->n, .spacing = spacing, .group = group};
+    struct near_cloud cloud = {
+        .dim = s->dim, .near = NEAR_OVERLAP, .n = p->n, .spacing = spacing, .group = group};
     for (int c = 0; c < s->dim; c++)
         cloud.x[c] = particles_real(p, "x", (uint32_t)c);
-    int status = near_pair(&cloud, &found, &i, &j, e);
+    for (k = 0; k < array->n_fill; k++)
+        for (i = first[k]; i < first[k + 1]; i++)
+            group[i] = (uint32_t)k;
+    int status = array->n_fill > 1 ? near_pair(&cloud, &found, &i, &j, e) : 0;
     if (!status && found) {
-        char one[256];
+        char one[256], where[80];
         document_pointer(s->doc, array->fill[group[i]].node, one, sizeof one);
-        status = document_fail(
-            s->doc, array->fill[group[j]].node, e,
-            "this fill overlaps %s: particles of both stand near (%.6g, %.6g, %.6g), "
-            "less than a quarter of their spacing apart",
-            one, cloud.x[0][i], s->dim > 1 ? cloud.x[1][i] : 0, s->dim > 2 ? cloud.x[2][i] : 0);
+        status = document_fail(s->doc, array->fill[group[j]].node, e,
+                               "this fill overlaps %s: particles of both stand near %s, "
+                               "less than a quarter of their spacing apart",
+                               one, place_text(&cloud, i, where, sizeof where));
     }
+    for (k = 0; !status && k < array->n_fill; k++)
+        if (array->fill[k].kind == FILL_FILE)
+            status = check_twins(s, &array->fill[k], &cloud, first[k], first[k + 1], group, e);
     free(group);
     return status;
 }

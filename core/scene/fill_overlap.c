@@ -5,9 +5,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Two particles overlap when nearer than this part of the lesser of their spacings. */
-#define NEAR .25
-
 struct hash {
     const struct near_cloud *cloud;
     double cell;
@@ -42,7 +39,7 @@ static int hash_init(struct hash *h, const struct near_cloud *c, struct error *e
         widest = fmax(widest, c->spacing[i]);
     while (size < c->n && size < 1u << 30)
         size *= 2;
-    *h = (struct hash){.cloud = c, .cell = NEAR * widest, .mask = size - 1};
+    *h = (struct hash){.cloud = c, .cell = c->near * widest, .mask = size - 1};
     if (c->n >= UINT32_MAX)
         return error_set(e, EXIT_USAGE, "%zu particles are too many", c->n);
     h->begin = calloc((size_t)size + 1, sizeof *h->begin);
@@ -68,7 +65,7 @@ static int hash_init(struct hash *h, const struct near_cloud *c, struct error *e
 
 static bool overlap(const struct near_cloud *c, size_t i, size_t j)
 {
-    double r2 = 0, near = NEAR * fmin(c->spacing[i], c->spacing[j]);
+    double r2 = 0, near = c->near * fmin(c->spacing[i], c->spacing[j]);
     if (c->group[i] == c->group[j])
         return false;
     for (int k = 0; k < c->dim; k++)
@@ -127,7 +124,7 @@ int fill_check_overlap(const struct particles *arrays, size_t n, const struct sc
     double *x = calloc(total * 4, sizeof *x);
     uint32_t *group = calloc(total, sizeof *group);
     int status = x && group ? 0 : error_memory(e, "the search for overlaps", total * 4 * sizeof *x);
-    struct near_cloud cloud = {.dim = s->dim, .n = total, .group = group};
+    struct near_cloud cloud = {.dim = s->dim, .near = NEAR_OVERLAP, .n = total, .group = group};
     for (size_t a = 0; !status && a < n; a++) {
         const double *h = particles_real(&arrays[a], "h", 0);
         for (size_t k = 0; k < arrays[a].n; k++, at++) {

@@ -59,14 +59,17 @@ int fill_fields(struct particles *p, const struct scene *s, size_t a, size_t k, 
                 size_t n, const struct table *t, bool *given, struct error *e);
 
 /* Clouds whose particles must keep apart; see fill_overlap.c. */
+#define NEAR_OVERLAP .25 /* particles of different origin */
+#define NEAR_SAME 1e-6   /* particles of the same file */
 struct near_cloud {
     int dim;
+    double near; /* how near is too near, in spacings */
     size_t n;
     const double *x[3];
     const double *spacing;
     const uint32_t *group; /* pairs of the same group are not looked at */
 };
-/* The first pair of different groups nearer than a quarter of the lesser spacing; *found false if
+/* The first pair of different groups nearer than `near` times the lesser spacing; *found false if
  * there is none. */
 int near_pair(const struct near_cloud *c, bool *found, size_t *i, size_t *j, struct error *e);
 

@@ -10,14 +10,16 @@ enum { ETA, TOLERANCE };
 
 static const sph_param params[] = {
     {"eta", "", "smoothing length in units of (m / rho)^(1/d)", 1.5, 1.0, 4.0, NULL},
-    {"h_tolerance", "", "relative change of h at which its iteration ends", 1e-3, 1e-15, 1e-2, NULL},
+    {"h_tolerance", "", "relative change of h at which its iteration ends", 1e-3, 1e-15, 1e-2,
+     NULL},
 };
 
 static const sph_prop props[] = {
     {"m", "kg", "mass", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN},
     {"h", "m", "smoothing length", SPH_SCALAR, SPH_DST_UPDATE, NAN},
     {"rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_SUM, 0.0},
-    {"drho_dh", "kg/m^(d+1)", "derivative of the summed density with h", SPH_SCALAR, SPH_DST_SUM, 0.0},
+    {"drho_dh", "kg/m^(d+1)", "derivative of the summed density with h", SPH_SCALAR, SPH_DST_SUM,
+     0.0},
     {"h_busy", "", "1 while the iteration of h goes on", SPH_INT32, SPH_DST_WRITE, 0.0},
 };
 
@@ -39,7 +41,8 @@ static double own_weight(const sph_kernel_form *kernel, double eta)
         for (int y = kernel->dim > 1 ? -n : 0; y <= (kernel->dim > 1 ? n : 0); y++)
             for (int x = -n; x <= n; x++)
                 if (x || y || z)
-                    others += scale * sph_kernel_w(kernel, sqrt((double)(x * x + y * y + z * z)) / eta);
+                    others +=
+                        scale * sph_kernel_w(kernel, sqrt((double)(x * x + y * y + z * z)) / eta);
     return (1.0 - others) / scale;
 }
 

@@ -10,8 +10,10 @@ if (riemann < 0.5) {
     for (int n = 0; n <= GSPH_NEWTON; n++) {
         const R shock_l = sph_sqrt(A_l / (star + B_l)), shock_r = sph_sqrt(A_r / (star + B_r));
         const R w_l = sph_pow(star / p_l, z_l), w_r = sph_pow(star / p_r, z_r);
-        f_l = sph_select(star > p_l, (star - p_l) * shock_l, 2.0 * c_l / (gamma_l - 1.0) * (w_l - 1.0));
-        f_r = sph_select(star > p_r, (star - p_r) * shock_r, 2.0 * c_r / (gamma_r - 1.0) * (w_r - 1.0));
+        f_l = sph_select(star > p_l, (star - p_l) * shock_l,
+                         2.0 * c_l / (gamma_l - 1.0) * (w_l - 1.0));
+        f_r = sph_select(star > p_r, (star - p_r) * shock_r,
+                         2.0 * c_r / (gamma_r - 1.0) * (w_r - 1.0));
         if (n == GSPH_NEWTON)
             break; /* the last round only evaluates f, for the velocity */
         const R g_l = sph_select(star > p_l, shock_l * (1.0 - 0.5 * (star - p_l) / (star + B_l)),
@@ -21,7 +23,8 @@ if (riemann < 0.5) {
         const R f = f_l + f_r + u_r - u_l, slope = g_l + g_r;
         /* Where both sides rarefy Newton's method runs in p^z: exact in one step for equal gammas. */
         const R base = sph_max(1.0 - z * f / (star * slope), sph_num(0.0));
-        const R next = sph_select(star < sph_min(p_l, p_r), star * sph_pow(base, 1.0 / z), star - f / slope);
+        const R next =
+            sph_select(star < sph_min(p_l, p_r), star * sph_pow(base, 1.0 / z), star - f / slope);
         star = sph_max(next, least);
     }
     p_star = star;

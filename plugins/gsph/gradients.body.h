@@ -1,6 +1,6 @@
 /* gradients.body.h -- one pair of the gradient sweep: moments and differences, weighted with -w'(q) / r. */
-const R weight = -m_j / rho_j * sph_dw(K, r * hinv_i) * rinv;
-sph_add(spread, -m_j * sph_dw(K, r * hinv_i) * r);
+const R weight = -m_j / rho_j * sph_dw(K, r *hinv_i) * rinv;
+sph_add(spread, -m_j *sph_dw(K, r *hinv_i) * r);
 const R drho = rho_i - rho_j, dp = p_i - p_j;
 for (int a = 0; a < DIM; a++) {
     const R wd = weight * dx[a];

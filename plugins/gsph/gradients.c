@@ -8,7 +8,8 @@ enum { SHARE };
 
 static const sph_param params[] = {
     {"volume_share", "",
-     "how much of the gradients' volume correction the forces take: 0 none, 1 all", 0.4, 0.0, 1.0, NULL},
+     "how much of the gradients' volume correction the forces take: 0 none, 1 all", 0.4, 0.0, 1.0,
+     NULL},
 };
 
 static const sph_prop props[] = {
@@ -18,8 +19,8 @@ static const sph_prop props[] = {
     {"v", "m/s", "velocity", SPH_VECTOR, SPH_DST_READ | SPH_SRC_READ, 0.0},
     {"grad_rho", "kg/m^(d+1)", "gradient of the density", SPH_VECTOR, SPH_DST_SUM, 0.0},
     {"grad_p", "J/m^(d+1)", "gradient of the pressure", SPH_VECTOR, SPH_DST_SUM, 0.0},
-    {"grad_v", "1/s", "gradient of the velocity: row c is that of component c", SPH_MATRIX, SPH_DST_SUM,
-     0.0},
+    {"grad_v", "1/s", "gradient of the velocity: row c is that of component c", SPH_MATRIX,
+     SPH_DST_SUM, 0.0},
     {"moment", "", "moment matrix of the gradients", SPH_MATRIX, SPH_DST_SUM, 0.0},
     {"volume", "", "volume correction of the forces", SPH_SCALAR, SPH_DST_SUM, 0.0},
 };
@@ -54,8 +55,9 @@ static void invert(uint32_t d, double a[9], double out[9])
         double c[9];
         for (int i = 0; i < 3; i++)
             for (int j = 0; j < 3; j++)
-                c[3 * j + i] = a[3 * ((i + 1) % 3) + (j + 1) % 3] * a[3 * ((i + 2) % 3) + (j + 2) % 3] -
-                               a[3 * ((i + 1) % 3) + (j + 2) % 3] * a[3 * ((i + 2) % 3) + (j + 1) % 3];
+                c[3 * j + i] =
+                    a[3 * ((i + 1) % 3) + (j + 1) % 3] * a[3 * ((i + 2) % 3) + (j + 2) % 3] -
+                    a[3 * ((i + 1) % 3) + (j + 2) % 3] * a[3 * ((i + 2) % 3) + (j + 1) % 3];
         double s = 1.0 / (a[0] * c[0] + a[1] * c[3] + a[2] * c[6]);
         for (int k = 0; k < 9; k++)
             out[k] = s * c[k];
@@ -63,7 +65,8 @@ static void invert(uint32_t d, double a[9], double out[9])
 }
 
 /* g = inverse * g, for the vector that stands in planes first, first + 1, ... of a column. */
-static void multiply(const sph_column *column, uint32_t first, uint64_t i, uint32_t d, const double *inverse)
+static void multiply(const sph_column *column, uint32_t first, uint64_t i, uint32_t d,
+                     const double *inverse)
 {
     double g[3] = {0.0, 0.0, 0.0};
     for (uint32_t a = 0; a < d; a++)

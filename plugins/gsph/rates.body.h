@@ -55,10 +55,10 @@ p_star = sph_max(p_star, sph_num(0.0));
 #include "exact.body.h"
 
 /* The force of the pair: geometric mean of the volumes, corrected. */
-const R dw_i = sph_dw(K, r * hinv_i) * sph_ipow(hinv_i, DIM + 1);
-const R dw_j = sph_dw(K, r * hinv_j) * sph_ipow(hinv_j, DIM + 1);
+const R dw_i = sph_dw(K, r *hinv_i) * sph_ipow(hinv_i, DIM + 1);
+const R dw_j = sph_dw(K, r *hinv_j) * sph_ipow(hinv_j, DIM + 1);
 const R flux = -m_j * p_star * (volume_i * dw_i + volume_j * dw_j) / (rho_i * rho_j);
 for (int a = 0; a < DIM; a++)
-    sph_add(force[a], flux * e[a]);
-sph_add(power, flux * u_star);
+    sph_add(force[a], flux *e[a]);
+sph_add(power, flux *u_star);
 sph_take_max(fastest, signal);

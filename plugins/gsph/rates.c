@@ -10,8 +10,8 @@ enum { RIEMANN, LIMITER, BETA };
 static const sph_param params[] = {
     {"riemann", "", "Riemann solver", 1.0, 1.0, 0.0, "exact|hllc"},
     {"limiter", "", "slope limiter; none: first order", 1.0, 1.0, 0.0, "none|minmod|van-leer"},
-    {"beta", "", "weight of the closing speed in the signal speed that bounds the time step", 1.0, 0.0, 10.0,
-     NULL},
+    {"beta", "", "weight of the closing speed in the signal speed that bounds the time step", 1.0,
+     0.0, 10.0, NULL},
 };
 
 static const sph_prop props[] = {
@@ -21,8 +21,10 @@ static const sph_prop props[] = {
     {"cs", "m/s", "speed of sound", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN},
     {"v", "m/s", "velocity", SPH_VECTOR, SPH_DST_READ | SPH_SRC_READ, 0.0},
     {"volume", "", "volume correction of the forces", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN},
-    {"grad_rho", "kg/m^(d+1)", "gradient of the density", SPH_VECTOR, SPH_DST_READ | SPH_SRC_READ, NAN},
-    {"grad_p", "J/m^(d+1)", "gradient of the pressure", SPH_VECTOR, SPH_DST_READ | SPH_SRC_READ, NAN},
+    {"grad_rho", "kg/m^(d+1)", "gradient of the density", SPH_VECTOR, SPH_DST_READ | SPH_SRC_READ,
+     NAN},
+    {"grad_p", "J/m^(d+1)", "gradient of the pressure", SPH_VECTOR, SPH_DST_READ | SPH_SRC_READ,
+     NAN},
     {"grad_v", "1/s", "gradient of the velocity", SPH_MATRIX, SPH_DST_READ | SPH_SRC_READ, NAN},
     {"force", "m/s^2", "sum of the pairs' momentum fluxes", SPH_VECTOR, SPH_DST_SUM, 0.0},
     {"power", "W/kg", "sum of the pairs' energy fluxes", SPH_SCALAR, SPH_DST_SUM, 0.0},
@@ -42,7 +44,8 @@ static const sph_prop props[] = {
                     cap),                                                                          \
             -(cap))
 #define GSPH_MINMOD(a, b)                                                                          \
-    sph_select((a) * (b) > sph_num(0.0), sph_select(sph_abs(a) < sph_abs(b), (a), (b)), sph_num(0.0))
+    sph_select((a) * (b) > sph_num(0.0), sph_select(sph_abs(a) < sph_abs(b), (a), (b)),            \
+               sph_num(0.0))
 #define GSPH_VAN_LEER(a, b)                                                                        \
     sph_select((a) * (b) > sph_num(0.0), 2.0 * (a) * (b) / ((a) + (b)), sph_num(0.0))
 /* Most speeds of sound that the velocity may be changed by. */

@@ -16,10 +16,10 @@ SPH_BEGIN_DECLS
  * c * plane + i. 64-byte aligned; at least 2 * SPH_LANES elements past the last particle may be
  * read. What a pass writes past its last destination is lost. */
 typedef struct sph_column {
-    void *data;      /* double or float (sph_batch.real), int32_t, int64_t; NULL: not present */
-    uint64_t plane;  /* elements from one component to the next */
-    uint32_t type;   /* SPH_SCALAR ... */
-    uint32_t ncomp;  /* components in this run's dimension */
+    void *data;     /* double or float (sph_batch.real), int32_t, int64_t; NULL: not present */
+    uint64_t plane; /* elements from one component to the next */
+    uint32_t type;  /* SPH_SCALAR ... */
+    uint32_t ncomp; /* components in this run's dimension */
 } sph_column;
 
 /* A kernel compiled for one run: W(r, h) = h^-dim norm sum_k P_k(t_k), t_k = max(0, knot_k - q),
@@ -28,8 +28,8 @@ typedef struct sph_column {
 #define SPH_KERNEL_COEFS 6u
 typedef struct sph_kernel_piece {
     double knot;
-    uint32_t power, n_coef;    /* of P */
-    uint32_t dpower, dn_coef;  /* of D */
+    uint32_t power, n_coef;   /* of P */
+    uint32_t dpower, dn_coef; /* of D */
     double c[SPH_KERNEL_COEFS];
     double d[SPH_KERNEL_COEFS];
 } sph_kernel_piece;
@@ -42,8 +42,8 @@ typedef struct sph_kernel_form {
 
 typedef struct sph_batch {
     uint32_t size, dim;
-    uint32_t real;  /* SPH_F64 or SPH_F32 */
-    uint32_t lanes; /* SPH_LANES */
+    uint32_t real;         /* SPH_F64 or SPH_F32 */
+    uint32_t lanes;        /* SPH_LANES */
     uint64_t first, count; /* destinations [first, first + count); first is a multiple of lanes */
     uint64_t n_dst, n_src; /* sizes of the two arrays, the source's ghosts included */
     /* Pair functions: group g = i / lanes has sources list[begin[g]] ... list[begin[g+1] - 1].
@@ -51,7 +51,7 @@ typedef struct sph_batch {
      * The destination itself is in it where the two arrays are one (see `same`). NULL otherwise. */
     const uint64_t *begin;
     const uint32_t *list;
-    uint32_t same;     /* 1: destination and source are the same array, so i == j is the self pair */
+    uint32_t same; /* 1: destination and source are the same array, so i == j is the self pair */
     uint32_t reserved;
     /* Position and smoothing length, over which the list was made: the destination's in `before` and
      * `after` too, the sources' in the sweep alone; NULL data for point functions. */

@@ -15,7 +15,7 @@ typedef struct sph_eos {
     sph_range_fn run;
     /* The inverse, for initial states given by what `run` writes: from p and rho to u. The host
      * uses it where a scene gives a field that run writes instead of one that it reads. */
-    sph_range_fn inverse; /* or NULL */
+    sph_range_fn inverse;   /* or NULL */
     sph_list inverse_props; /* of sph_prop; columns of the inverse's batch, in this order */
 } sph_eos;
 

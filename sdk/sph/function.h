@@ -44,17 +44,17 @@ typedef struct sph_function {
     uint32_t size;
     uint32_t shape; /* SPH_POINT or SPH_PAIR */
     const sph_item *item;
-    const sph_life *life;   /* or NULL */
-    sph_range_fn before;    /* per destination, before the sweeps; or NULL */
-    sph_range_fn run;       /* the point function, or the sweep over one source array */
-    sph_range_fn after;     /* per destination, after all sweeps; or NULL */
-    uint32_t reach;         /* pair: SPH_GATHER or SPH_SYMMETRIC */
-    uint32_t max_sweeps;    /* > 0: the pass iterates, at most so often; see `unfinished` */
-    const char *unfinished; /* a written SPH_INT32 property: 1 asks for another sweep of its group.
+    const sph_life *life;    /* or NULL */
+    sph_range_fn before;     /* per destination, before the sweeps; or NULL */
+    sph_range_fn run;        /* the point function, or the sweep over one source array */
+    sph_range_fn after;      /* per destination, after all sweeps; or NULL */
+    uint32_t reach;          /* pair: SPH_GATHER or SPH_SYMMETRIC */
+    uint32_t max_sweeps;     /* > 0: the pass iterates, at most so often; see `unfinished` */
+    const char *unfinished;  /* a written SPH_INT32 property: 1 asks for another sweep of its group.
                              * The pass must leave finished destinations as they are. */
-    double reach_scale;     /* times the kernel's support; 1 */
-    sph_list rates;         /* of sph_rate */
-    sph_list reductions;    /* of sph_reduction */
+    double reach_scale;      /* times the kernel's support; 1 */
+    sph_list rates;          /* of sph_rate */
+    sph_list reductions;     /* of sph_reduction */
     const char *device_body; /* text of the pair body for a device, or NULL */
 } sph_function;
 

@@ -11,7 +11,8 @@ SPH_BEGIN_DECLS
 /* Types of a property. A real is double or float, the host's choice (see sph_batch.real). */
 #define SPH_SCALAR 1u /* one real */
 #define SPH_VECTOR 2u /* dim reals; a mirror side flips the component along its normal */
-#define SPH_SYM 3u    /* symmetric tensor, dim (dim + 1) / 2 reals: xx, xy, xz, yy, yz, zz as present */
+#define SPH_SYM                                                                                    \
+    3u /* symmetric tensor, dim (dim + 1) / 2 reals: xx, xy, xz, yy, yz, zz as present */
 #define SPH_MATRIX 4u /* dim * dim reals, row by row: component [a][b] is plane a * dim + b */
 #define SPH_INT32 5u  /* one int32_t */
 #define SPH_INT64 6u  /* one int64_t */
@@ -31,15 +32,15 @@ typedef struct sph_prop {
     const char *doc;
     uint32_t type;   /* SPH_SCALAR ... */
     uint32_t access; /* SPH_DST_READ | ... */
-    double start;    /* of an accumulated property; else the initial value of one that is carried from
+    double start; /* of an accumulated property; else the initial value of one that is carried from
                       * step to step where a scene gives none (NaN: it must). Default 0 */
 } sph_prop;
 
 /* A user's parameter. The host parses, range-checks, documents and prints it. */
 typedef struct sph_param {
     const char *name, *unit, *doc;
-    double def;      /* default; NaN: mandatory. For a choice: the index of the default */
-    double min, max; /* inclusive; min > max: unbounded */
+    double def;          /* default; NaN: mandatory. For a choice: the index of the default */
+    double min, max;     /* inclusive; min > max: unbounded */
     const char *choices; /* "exact|hllc": the value is a word, handed on as its index; else NULL */
 } sph_param;
 

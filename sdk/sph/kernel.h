@@ -18,8 +18,8 @@ typedef struct sph_kernel_term {
 typedef struct sph_kernel {
     uint32_t size, reserved;
     const sph_item *item;
-    double support; /* in units of h; the largest knot */
-    double norm[4]; /* norm[dim]; norm[0] unused; 0 where a dimension is not supported */
+    double support;    /* in units of h; the largest knot */
+    double norm[4];    /* norm[dim]; norm[0] unused; 0 where a dimension is not supported */
     sph_list terms[4]; /* of sph_kernel_term, by dimension (they may be one list); [0] unused */
 } sph_kernel;
 

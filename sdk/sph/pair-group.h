@@ -95,8 +95,7 @@ static sph_status SPH_LOOP_NAME(SPH_ISA)(const sph_batch *b)
                 r2 += dx[c] * dx[c];
             }
             const R h_j = sph_num(h_s[j]);
-            const R reach =
-                K->support * (SPH_LOOP_REACH == SPH_GATHER ? h_i : sph_max(h_i, h_j));
+            const R reach = K->support * (SPH_LOOP_REACH == SPH_GATHER ? h_i : sph_max(h_i, h_j));
             B in = (B)(r2 < reach * reach);
             const B self = (B)(number == sph_num(b->same ? (double)j : -1.0));
 #if !SPH_LOOP_SELF

@@ -16,7 +16,8 @@ SPH_BEGIN_DECLS
 #define SPH_PLUGIN_MAGIC 0x4c504853u /* "SHPL" */
 
 typedef struct sph_plugin {
-    uint32_t size, magic, abi_major, abi_minor; /* checked before any other code of the plugin runs */
+    uint32_t size, magic, abi_major,
+        abi_minor; /* checked before any other code of the plugin runs */
     const char *name, *version, *license, *doc;
     /* Registers, nothing else: no files, no devices, no MPI, no output. [main] */
     sph_status (*init)(const sph_host *);
@@ -30,9 +31,16 @@ typedef const sph_plugin *(*sph_plugin_entry_fn)(void);
 #define SPH_PLUGIN(name, version, license, doc, init, fini)                                        \
     SPH_EXPORT const sph_plugin *sph_plugin_entry(void)                                            \
     {                                                                                              \
-        static const sph_plugin plugin = {                                                         \
-            (uint32_t)sizeof(sph_plugin), SPH_PLUGIN_MAGIC, SPH_ABI_MAJOR, SPH_ABI_MINOR,          \
-            (name), (version), (license), (doc), (init), (fini)};                                  \
+        static const sph_plugin plugin = {(uint32_t)sizeof(sph_plugin),                            \
+                                          SPH_PLUGIN_MAGIC,                                        \
+                                          SPH_ABI_MAJOR,                                           \
+                                          SPH_ABI_MINOR,                                           \
+                                          (name),                                                  \
+                                          (version),                                               \
+                                          (license),                                               \
+                                          (doc),                                                   \
+                                          (init),                                                  \
+                                          (fini)};                                                 \
         return &plugin;                                                                            \
     }
 

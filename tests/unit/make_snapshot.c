@@ -7,7 +7,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* Array "fluid": a lattice of n per side with every type of property; "wall": one row without most. */
+/* Array "fluid": a lattice of n per side with every type of property; "wall": one row without
+ * most. */
 static int fill(struct particles *fluid, struct particles *wall, int dim, size_t n, struct error *e)
 {
     size_t total = 1;
@@ -44,7 +45,8 @@ static int fill(struct particles *fluid, struct particles *wall, int dim, size_t
             particles_real(fluid, "stress", k)[i] = (double)i + 0.125 * k;
         for (uint32_t k = 0; k < property_ncomp(SPH_MATRIX, dim); k++)
             particles_real(fluid, "grad", k)[i] = -(double)i - 0.125 * k;
-        ((int64_t *)fluid->column[particles_find(fluid, "id")].data)[i] = ((int64_t)1 << 60) + (int64_t)i;
+        ((int64_t *)fluid->column[particles_find(fluid, "id")].data)[i] =
+            ((int64_t)1 << 60) + (int64_t)i;
         ((int32_t *)fluid->column[particles_find(fluid, "kind")].data)[i] = (int32_t)(i % 3);
     }
     for (size_t i = 0; i < n; i++) {

@@ -27,7 +27,8 @@ static inline int scratch_setup(void **state)
     return mkdtemp(s->dir) ? 0 : -1;
 }
 
-static inline int scratch_remove_one(const char *path, const struct stat *s, int type, struct FTW *f)
+static inline int scratch_remove_one(const char *path, const struct stat *s, int type,
+                                     struct FTW *f)
 {
     (void)s;
     (void)type;

@@ -105,7 +105,8 @@ static void shows_progress(void **state)
     char line[80];
     struct progress p = {.begin = 0, .end = 2};
     progress_line(line, sizeof line, &p, 120, 0.5, 1.25e-3, 2.1e-5, 100);
-    assert_string_equal(line, " 25 %  step 120  t 0.5  dt 1.25e-03  energy drift 2.1e-05  ETA 5 min 00 s");
+    assert_string_equal(
+        line, " 25 %  step 120  t 0.5  dt 1.25e-03  energy drift 2.1e-05  ETA 5 min 00 s");
     p.end = INFINITY;
     progress_line(line, sizeof line, &p, 120, 0.5, 1.25e-3, (double)NAN, 100);
     assert_non_null(strstr(line, "ETA ?"));

@@ -1,4 +1,5 @@
-/* test_output.c -- the output folder: claimed once, cleared of our own files only, never half written. */
+/* test_output.c -- the output folder: claimed once, cleared of our own files only, never half
+ * written. */
 #include "config.h"
 
 #include "io/output.h"

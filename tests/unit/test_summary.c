@@ -23,30 +23,31 @@ static const struct summary_plugin plugins[] = {{"demo", "0.1", "/x/demo.so", 0,
 
 static struct summary example(void)
 {
-    return (struct summary){.status = "done",
-                            .scene = "examples/demo.json",
-                            .title = "A demonstration",
-                            .n_array = 2,
-                            .array_name = array_name,
-                            .array_n = array_n,
-                            .steps = 812,
-                            .time = 0.6,
-                            .error = errors,
-                            .n_error = 3,
-                            .probe = probes,
-                            .n_probe = 2,
-                            .energy_drift = 2.1e-5,
-                            .momentum_drift = {1e-17, (double)INFINITY, 0},
-                            .angular_drift = {7, 8, 9},
-                            .dim = 2,
-                            .cost = {12.3, 12, 2, 1, .1, 0, 8120000, 2000000000, 80, 1700, 1 << 20, 312},
-                            .pass = passes,
-                            .n_pass = 3,
-                            .plugin = plugins,
-                            .n_plugin = 1,
-                            .threads = 2,
-                            .ranks = 1,
-                            .picture = "out/density.png"};
+    return (struct summary){
+        .status = "done",
+        .scene = "examples/demo.json",
+        .title = "A demonstration",
+        .n_array = 2,
+        .array_name = array_name,
+        .array_n = array_n,
+        .steps = 812,
+        .time = 0.6,
+        .error = errors,
+        .n_error = 3,
+        .probe = probes,
+        .n_probe = 2,
+        .energy_drift = 2.1e-5,
+        .momentum_drift = {1e-17, (double)INFINITY, 0},
+        .angular_drift = {7, 8, 9},
+        .dim = 2,
+        .cost = {12.3, 12, 2, 1, .1, 0, 8120000, 2000000000, 80, 1700, 1 << 20, 312},
+        .pass = passes,
+        .n_pass = 3,
+        .plugin = plugins,
+        .n_plugin = 1,
+        .threads = 2,
+        .ranks = 1,
+        .picture = "out/density.png"};
 }
 
 /* The value at a path of keys; NULL if there is none. */
@@ -103,10 +104,17 @@ static void keeps_its_contract(void **state)
     assert_true(cJSON_IsNull(cJSON_GetArrayItem(at(json, "conservation/momentum_drift"), 1)));
     assert_near(cJSON_GetArrayItem(at(json, "conservation/angular_drift"), 0)->valuedouble, 9, 0);
     assert_near(number_at(json, "conservation/mass_drift"), 0, 0);
-    static const char *const cost[] = {"wall_s",           "loop_s", "neighbour_s",
-                                       "io_s",             "mpi_s",  "particle_updates",
-                                       "pairs",            "ns_per_pair", "us_per_particle_update",
-                                       "peak_rss_bytes",   "bytes_per_particle"};
+    static const char *const cost[] = {"wall_s",
+                                       "loop_s",
+                                       "neighbour_s",
+                                       "io_s",
+                                       "mpi_s",
+                                       "particle_updates",
+                                       "pairs",
+                                       "ns_per_pair",
+                                       "us_per_particle_update",
+                                       "peak_rss_bytes",
+                                       "bytes_per_particle"};
     for (size_t i = 0; i < sizeof cost / sizeof cost[0]; i++)
         assert_true(cJSON_IsNumber(cJSON_GetObjectItem(at(json, "cost"), cost[i])));
     assert_near(number_at(json, "cost/pass_s/rates"), 12, 1e-12);

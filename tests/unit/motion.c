@@ -1,0 +1,341 @@
+/* motion.c -- see motion.h. */
+#include "config.h"
+
+#include "motion.h"
+
+#include <math.h>
+#include <string.h>
+
+#define SIZE(type) ((uint32_t)sizeof(type))
+
+#define FUNCTION(variable, name, params)                                                           \
+    static const sph_item variable##_item = {                                                      \
+        SIZE(sph_item), SPH_ALL_DIMS, name, "a mock", "", params, SPH_LIST(variable##_props)};     \
+    static const sph_function variable
+
+static double *at(const sph_column *column, uint32_t c)
+{
+    return (double *)column->data + c * column->plane;
+}
+
+/* -- Point functions ----------------------------------------------------------------------------- */
+
+static sph_status spring_run(const sph_batch *b)
+{
+    for (uint32_t c = 0; c < b->dim; c++)
+        for (uint64_t i = b->first; i < b->first + b->count; i++)
+            at(&b->dst[2], c)[i] = -at(&b->dst[0], c)[i] - b->param[0] * at(&b->dst[1], c)[i];
+    return SPH_OK;
+}
+
+static const sph_param spring_params[] = {{"damping", "", "", 0, 1, 0, NULL}};
+static const sph_prop spring_props[] = {
+    {"x", "", "", SPH_VECTOR, SPH_DST_READ, 0},
+    {"v", "", "", SPH_VECTOR, SPH_DST_READ, 0},
+    {"a", "", "", SPH_VECTOR, SPH_DST_WRITE, 0},
+};
+static const sph_rate spring_rates[] = {{"v", "a", SPH_KICK, 0}};
+FUNCTION(spring, "spring", SPH_LIST(spring_params)) = {.size = SIZE(sph_function),
+                                                       .shape = SPH_POINT,
+                                                       .item = &spring_item,
+                                                       .run = spring_run,
+                                                       .reach_scale = 1,
+                                                       .rates = SPH_LIST(spring_rates)};
+
+static sph_status bound_run(const sph_batch *b)
+{
+    for (uint64_t i = b->first; i < b->first + b->count; i++)
+        at(&b->dst[0], 0)[i] = b->param[b->time < 0.5 ? 0 : 1];
+    return SPH_OK;
+}
+
+static const sph_param bound_params[] = {{"early", "", "", 0.1, 1, 0, NULL},
+                                         {"late", "", "", 0.1, 1, 0, NULL}};
+static const sph_prop bound_props[] = {{"dt", "", "", SPH_SCALAR, SPH_DST_WRITE, 0}};
+static const sph_reduction bound_reductions[] = {{"dt", "dt", SPH_REDUCE_MIN, SPH_USE_TIME_STEP}};
+FUNCTION(bound, "bound", SPH_LIST(bound_params)) = {.size = SIZE(sph_function),
+                                                    .shape = SPH_POINT,
+                                                    .item = &bound_item,
+                                                    .run = bound_run,
+                                                    .reach_scale = 1,
+                                                    .reductions = SPH_LIST(bound_reductions)};
+
+static sph_status nothing(const sph_batch *b)
+{
+    (void)b;
+    return SPH_OK;
+}
+
+static const sph_prop measure_props[] = {{"value", "", "", SPH_SCALAR, SPH_DST_READ, 1}};
+static const sph_reduction measure_reductions[] = {
+    {"least", "value", SPH_REDUCE_MIN, SPH_USE_NONE},
+    {"most", "value", SPH_REDUCE_MAX, SPH_USE_NONE},
+    {"total", "value", SPH_REDUCE_SUM, SPH_USE_NONE},
+    {"bound", "value", SPH_REDUCE_MIN, SPH_USE_TIME_STEP},
+};
+FUNCTION(measure, "measure", SPH_NO_LIST) = {.size = SIZE(sph_function),
+                                             .shape = SPH_POINT,
+                                             .item = &measure_item,
+                                             .run = nothing,
+                                             .reach_scale = 1,
+                                             .reductions = SPH_LIST(measure_reductions)};
+
+static sph_status count_up_run(const sph_batch *b)
+{
+    int32_t *again = b->dst[2].data;
+    for (uint64_t i = b->first; i < b->first + b->count; i++) {
+        at(&b->dst[1], 0)[i] += 1;
+        again[i] = at(&b->dst[1], 0)[i] < at(&b->dst[0], 0)[i];
+    }
+    return SPH_OK;
+}
+
+static const sph_prop count_up_props[] = {
+    {"need", "", "", SPH_SCALAR, SPH_DST_READ, 1},
+    {"done", "", "", SPH_SCALAR, SPH_DST_UPDATE, 0},
+    {"again", "", "", SPH_INT32, SPH_DST_WRITE, 0},
+};
+FUNCTION(count_up, "count-up", SPH_NO_LIST) = {.size = SIZE(sph_function),
+                                               .shape = SPH_POINT,
+                                               .item = &count_up_item,
+                                               .run = count_up_run,
+                                               .max_sweeps = 6,
+                                               .unfinished = "again",
+                                               .reach_scale = 1};
+
+static sph_status breathe_run(const sph_batch *b)
+{
+    for (uint64_t i = b->first; i < b->first + b->count; i++)
+        at(&b->dst[0], 0)[i] =
+            at(&b->dst[1], 0)[i] * (1 + b->param[0] * sin(9 * b->time + at(&b->dst[2], 0)[i]));
+    return SPH_OK;
+}
+
+static const sph_param breathe_params[] = {{"depth", "", "", 0.05, 1, 0, NULL}};
+static const sph_prop breathe_props[] = {
+    {"h", "", "", SPH_SCALAR, SPH_DST_WRITE, NAN},
+    {"h0", "", "", SPH_SCALAR, SPH_DST_READ, NAN},
+    {"colour", "", "", SPH_SCALAR, SPH_DST_READ, 0},
+};
+FUNCTION(breathe, "breathe", SPH_LIST(breathe_params)) = {.size = SIZE(sph_function),
+                                                          .shape = SPH_POINT,
+                                                          .item = &breathe_item,
+                                                          .run = breathe_run,
+                                                          .reach_scale = 1};
+
+static sph_status shade_run(const sph_batch *b)
+{
+    for (uint64_t i = b->first; i < b->first + b->count; i++)
+        at(&b->dst[2], 0)[i] = at(&b->dst[0], 0)[i] + b->time;
+    for (uint32_t c = 0; c < b->dim; c++)
+        for (uint64_t i = b->first; i < b->first + b->count; i++)
+            at(&b->dst[3], c)[i] = at(&b->dst[1], c)[i] + (c == 0 ? b->time : 0);
+    return SPH_OK;
+}
+
+static const sph_prop shade_props[] = {
+    {"colour", "", "", SPH_SCALAR, SPH_DST_READ, 0},
+    {"v", "", "", SPH_VECTOR, SPH_DST_READ, 0},
+    {"q", "", "", SPH_SCALAR, SPH_DST_WRITE, 0},
+    {"w", "", "", SPH_VECTOR, SPH_DST_WRITE, 0},
+};
+FUNCTION(shade, "shade", SPH_NO_LIST) = {.size = SIZE(sph_function),
+                                         .shape = SPH_POINT,
+                                         .item = &shade_item,
+                                         .run = shade_run,
+                                         .reach_scale = 1};
+
+/* -- Pair functions ------------------------------------------------------------------------------ */
+
+static double distance(const sph_batch *b, uint64_t i, uint32_t j)
+{
+    double r2 = 0;
+    for (uint32_t c = 0; c < b->dim; c++) {
+        const double d = at(&b->x_dst, c)[i] - at(&b->x_src, c)[j];
+        r2 += d * d;
+    }
+    return sqrt(r2);
+}
+
+static double weight(double r, double reach)
+{
+    return r < reach ? (1 - r / reach) * (1 - r / reach) : 0;
+}
+
+static sph_status gather_run(const sph_batch *b)
+{
+    for (uint64_t i = b->first; i < b->first + b->count; i++)
+        for (uint64_t k = b->begin[i / SPH_LANES]; k < b->begin[i / SPH_LANES + 1]; k++) {
+            const uint32_t j = b->list[k];
+            const double f = weight(distance(b, i, j), MOTION_SUPPORT * at(&b->h_dst, 0)[i]);
+            const double mf = at(&b->src[0], 0)[j] * f;
+            at(&b->dst[3], 0)[i] += mf * at(&b->src[1], 0)[j];
+            for (uint32_t c = 0; c < b->dim; c++)
+                at(&b->dst[4], c)[i] += mf * at(&b->src[2], c)[j];
+        }
+    return SPH_OK;
+}
+
+static const sph_prop gather_props[] = {
+    {"m", "", "", SPH_SCALAR, SPH_SRC_READ, NAN}, {"q", "", "", SPH_SCALAR, SPH_SRC_READ, NAN},
+    {"w", "", "", SPH_VECTOR, SPH_SRC_READ, NAN}, {"s", "", "", SPH_SCALAR, SPH_DST_SUM, 0},
+    {"sv", "", "", SPH_VECTOR, SPH_DST_SUM, 0},
+};
+FUNCTION(gather, "gather", SPH_NO_LIST) = {.size = SIZE(sph_function),
+                                           .shape = SPH_PAIR,
+                                           .item = &gather_item,
+                                           .run = gather_run,
+                                           .reach = SPH_GATHER,
+                                           .reach_scale = 1};
+
+static sph_status both_run(const sph_batch *b)
+{
+    for (uint64_t i = b->first; i < b->first + b->count; i++)
+        for (uint64_t k = b->begin[i / SPH_LANES]; k < b->begin[i / SPH_LANES + 1]; k++) {
+            const uint32_t j = b->list[k];
+            const double h = fmax(at(&b->h_dst, 0)[i], at(&b->h_src, 0)[j]);
+            at(&b->dst[2], 0)[i] += at(&b->src[0], 0)[j] * at(&b->src[1], 0)[j] *
+                                    weight(distance(b, i, j), MOTION_SUPPORT * h);
+        }
+    return SPH_OK;
+}
+
+static const sph_prop both_props[] = {
+    {"m", "", "", SPH_SCALAR, SPH_SRC_READ, NAN},
+    {"q", "", "", SPH_SCALAR, SPH_SRC_READ, NAN},
+    {"both", "", "", SPH_SCALAR, SPH_DST_SUM, 0},
+};
+FUNCTION(both, "gather-both", SPH_NO_LIST) = {.size = SIZE(sph_function),
+                                              .shape = SPH_PAIR,
+                                              .item = &both_item,
+                                              .run = both_run,
+                                              .reach = SPH_SYMMETRIC,
+                                              .reach_scale = 1};
+
+static sph_status widen_run(const sph_batch *b)
+{
+    for (uint64_t i = b->first; i < b->first + b->count; i++)
+        for (uint64_t k = b->begin[i / SPH_LANES]; k < b->begin[i / SPH_LANES + 1]; k++)
+            at(&b->dst[1], 0)[i] +=
+                distance(b, i, b->list[k]) < MOTION_SUPPORT * at(&b->dst[0], 0)[i];
+    return SPH_OK;
+}
+
+static sph_status widen_after(const sph_batch *b)
+{
+    int32_t *again = b->dst[2].data;
+    for (uint64_t i = b->first; i < b->first + b->count; i++) {
+        again[i] = at(&b->dst[1], 0)[i] < b->param[0];
+        if (again[i])
+            at(&b->dst[0], 0)[i] *= 4.0 / 3;
+    }
+    return SPH_OK;
+}
+
+static const sph_param widen_params[] = {{"enough", "", "", 1, 1, 0, NULL}};
+static const sph_prop widen_props[] = {
+    {"h", "", "", SPH_SCALAR, SPH_DST_UPDATE, NAN},
+    {"found", "", "", SPH_SCALAR, SPH_DST_SUM, 0},
+    {"again", "", "", SPH_INT32, SPH_DST_WRITE, 0},
+};
+FUNCTION(widen, "widen", SPH_LIST(widen_params)) = {.size = SIZE(sph_function),
+                                                    .shape = SPH_PAIR,
+                                                    .item = &widen_item,
+                                                    .run = widen_run,
+                                                    .after = widen_after,
+                                                    .reach = SPH_GATHER,
+                                                    .max_sweeps = 20,
+                                                    .unfinished = "again",
+                                                    .reach_scale = 1};
+
+/* -- Schemes ------------------------------------------------------------------------------------- */
+
+static const sph_rate rates[] = {{"x", "v", SPH_DRIFT, 0}};
+static const sph_step swing_steps[] = {{SPH_AT_EVALUATE, SPH_KIND_FUNCTION, "spring"}};
+static const sph_step coast_steps[] = {{SPH_AT_EVALUATE, SPH_KIND_FUNCTION, "shade"}};
+static const sph_item swing_item = {SIZE(sph_item), SPH_ALL_DIMS, "swing", "a mock", "",
+                                    SPH_NO_LIST,    SPH_NO_LIST};
+static const sph_item coast_item = {SIZE(sph_item), SPH_ALL_DIMS, "coast", "a mock", "",
+                                    SPH_NO_LIST,    SPH_NO_LIST};
+static const sph_scheme swing = {
+    SIZE(sph_scheme), 0, &swing_item, "thing", "kdk", 0.25, SPH_LIST(swing_steps), SPH_LIST(rates)};
+static const sph_scheme coast = {
+    SIZE(sph_scheme), 0, &coast_item, "thing", "kdk", 0.25, SPH_LIST(coast_steps), SPH_LIST(rates)};
+
+const struct rig_items motion_items = {
+    {&spring, &bound, &measure, &count_up, &breathe, &shade, &gather, &both, &widen, NULL},
+    {NULL},
+    {&swing, &coast, NULL}};
+
+/* -- The same by hand ---------------------------------------------------------------------------- */
+
+static const double *real(const struct plan_array *a, const char *name, int c)
+{
+    return particles_real(&a->p, name, (uint32_t)c);
+}
+
+/* Image `k` (0: itself, 1, 2: across the low, the high side) of x along an axis; *sign of the component of a
+ * vector. False: there is none. */
+static bool image(const struct box *box, int axis, int k, double *x, double *sign)
+{
+    *sign = 1;
+    if (k == 0)
+        return true;
+    const enum side side = box->bounded ? box->side[axis][k - 1] : SIDE_OPEN;
+    const double length = box->max[axis] - box->min[axis];
+    if (side == SIDE_PERIODIC)
+        *x += k == 1 ? -length : length;
+    else if (side == SIDE_MIRROR) {
+        *x = 2 * (k == 1 ? box->min[axis] : box->max[axis]) - *x;
+        *sign = -1;
+    }
+    return side != SIDE_OPEN;
+}
+
+struct sum {
+    double s, sv[3];
+};
+
+/* Adds what particle j of `src` and all its images give to particle i of `dst`. */
+static void add_images(const struct run *r, bool both, const struct plan_array *dst, size_t i,
+                       const struct plan_array *src, size_t j, struct sum *sum)
+{
+    const int dim = r->plan->dim;
+    const int images = dim == 1 ? 3 : dim == 2 ? 9 : 27;
+    const double h = both ? fmax(real(dst, "h", 0)[i], real(src, "h", 0)[j]) : real(dst, "h", 0)[i];
+    for (int k = 0; k < images; k++) {
+        double r2 = 0, sign[3];
+        bool there = true;
+        for (int c = 0, rest = k; c < dim; c++, rest /= 3) {
+            double x = real(src, "x", c)[j];
+            there = image(&r->plan->scene->box, c, rest % 3, &x, &sign[c]) && there;
+            r2 += (real(dst, "x", c)[i] - x) * (real(dst, "x", c)[i] - x);
+        }
+        if (!there)
+            continue;
+        const double mf = real(src, "m", 0)[j] * weight(sqrt(r2), MOTION_SUPPORT * h);
+        sum->s += mf * real(src, "q", 0)[j];
+        for (int c = 0; c < dim; c++)
+            sum->sv[c] += sign[c] * mf * real(src, "w", c)[j];
+    }
+}
+
+double motion_error(const struct run *r, bool both, size_t dst, const size_t *src, size_t n_src)
+{
+    const struct plan_array *to = &r->plan->array[dst];
+    double worst = 0, scale = 0;
+    for (size_t i = 0; i < to->p.n; i++) {
+        struct sum sum = {0};
+        for (size_t s = 0; s < n_src; s++)
+            for (size_t j = 0; j < r->plan->array[src[s]].p.n; j++)
+                add_images(r, both, to, i, &r->plan->array[src[s]], j, &sum);
+        const double error = fabs(sum.s - real(to, both ? "both" : "s", 0)[i]);
+        worst = error <= worst ? worst : error; /* a NaN comes through */
+        scale = fmax(scale, fabs(sum.s));
+        for (int c = 0; !both && c < r->plan->dim; c++) {
+            const double vector = fabs(sum.sv[c] - real(to, "sv", c)[i]);
+            worst = vector <= worst ? worst : vector;
+        }
+    }
+    return worst / scale;
+}

@@ -1,0 +1,349 @@
+#!/usr/bin/env python3
+"""Wrong inputs: each is answered by one sentence on stderr that names the place, by the right exit status,
+and leaves nothing half written. The scenes are files in tests/wrong-inputs, or its base.json with one
+change; the program is $SPH (default build/sph)."""
+import contextlib
+import fcntl
+import json
+import os
+import resource
+import shutil
+import subprocess
+import sys
+import tempfile
+
+here = os.path.dirname(os.path.abspath(__file__))
+top = os.environ.get("top_srcdir") or os.path.join(here, "..")
+folder = os.path.join(top, "tests", "wrong-inputs")
+sph = os.path.abspath(os.environ.get("SPH") or os.path.join(top, "build", "sph"))
+if "SPH_PLUGIN_PATH" not in os.environ:
+    os.environ["SPH_PLUGIN_PATH"] = os.path.join(os.path.dirname(sph), "plugins", ".libs")
+with open(os.path.join(folder, "base.json"), encoding="utf-8") as file:
+    base = file.read()
+
+DONE, RUN, USAGE, REFUSED = 0, 1, 2, 3
+cases = []
+
+
+def case(name, arguments, code, *parts, **more):
+    """Runs sph with `arguments` in a fresh folder; every part stands in the sentence."""
+    cases.append((name, arguments, code, parts, more))
+
+
+def text(name, place, *parts):
+    """A file of tests/wrong-inputs, checked; `place` is line:column."""
+    case(name, ["check", name], USAGE, f"sph: {name}:{place}: ", *parts, copy=[name])
+
+
+def change(old, new, *parts, code=USAGE, without="", **more):
+    """base.json with new in place of old (and without `without`), as scene.json; "@" in new is left out: there
+    the message points."""
+    assert base.count(old) == 1, f"{old!r} stands in base.json {base.count(old)} times"
+    scene = base.replace(old, new)
+    if without:
+        scene = scene.replace(without, "")
+    at = scene.find("@")
+    place = ()
+    if at >= 0:
+        scene = scene.replace("@", "")
+        line = scene.count("\n", 0, at) + 1
+        place = (f"scene.json:{line}:{at - scene.rfind(chr(10), 0, at)}: ",)
+    case(f"{old} -> {new}", ["check", "scene.json"], code, *place, *parts, scene=scene, **more)
+
+
+def fill(new, *parts, **more):
+    change('"fill": {"lattice": "square", "spacing": 0.02}', '"fill": ' + new, *parts, **more)
+
+
+# -- Texts that are no scene ---------------------------------------------------------------------
+
+text("empty.json", "1:1", "the text is empty")
+text("blank.json", "3:1", "the text is empty")
+text("number.json", "1:1", "a scene is an object")
+text("no-keys.json", "1:1", "the scene is empty")
+text("truncated.json", "4:43", "string that begins in line 4, column 39")
+text("unclosed.json", "4:1", "object that begins in line 3, column 13")
+text("deep.json", "1:410", "nested deeper than 64")
+text("deeper.json", "1:65", "nested deeper than 64")
+text("utf8.json", "3:18", "byte 0xe9 is not UTF-8")
+text("duplicate.json", "4:5", "/time: ", "already, in line 3, column 5")
+text("nan.json", "3:21", "NaN is not a number")
+text("infinity.json", "3:22", "Infinity is not a number")
+text("huge-number.json", "3:21", "1e999 is too large")
+text("comma.json", "3:23", "comma")
+text("quotes.json", "2:5", "double quotes")
+text("comment.json", "2:5", "JSON has no comments")
+text("line-break.json", "2:14", "not closed in its line")
+text("tail.json", "2:1", "behind the end")
+text("zero.json", "1:30", "control character 0x00")
+
+# -- Files that are none -------------------------------------------------------------------------
+
+case("no such scene", ["check", "nowhere.json"], USAGE, "nowhere.json: cannot be read: No such file")
+case("a folder", ["check", "."], USAGE, ".: is a folder")
+case("a dangling link", ["check", "link.json"], USAGE, "link.json: cannot be read",
+     link=("nowhere", "link.json"))
+case("a scene that is a program", ["check", "scene.json"], USAGE, "scene.json:", "UTF-8",
+     binary=b"\x7fELF\x02\x01\x01\x00" + bytes(range(256)))
+
+# -- Scenes --------------------------------------------------------------------------------------
+
+change('"title":', '@"titel":', '/titel: unknown key "titel" (did you mean "title"?)')
+change('"dimensions": 1', '"dimensions": @4', "/dimensions: 4 is too large")
+change('"dimensions": 1', '"dimensions": @"one"', '/dimensions: "one" is not a whole number')
+change('"dimensions": 1,', '"units": @"metric", "dimensions": 1,', '/units: unknown system of units "metric"')
+change('"min": [0]', '"min": @[0, 0]', "/domain/min: 2 numbers in 1 dimension; give 1")
+change('"domain": {"min": [0]', '"domain": @{"min": [2]', "/domain: the domain is empty: along x")
+change('"mirror"', '@"miror"', '/domain/sides/x: "miror" is not a side (did you mean "mirror"?)')
+change('"mirror"', '@["periodic", "open"]', "/domain/sides/x: one side is periodic")
+change('"material": "gas"', '"material": @"gass"', 'unknown material "gass" (did you mean "gas"?)')
+change('"name": "ideal-gas"', '"name": "ideal-gsa"', '"ideal-gsa"', '(did you mean "ideal-gas"?)')
+change('"gamma": 1.4', '"gama": @1.4', '/materials/gas/eos/gama: ', '(did you mean "gamma"?)')
+change('"gamma": 1.4', '"gamma": @-1.4', "/materials/gas/eos/gamma: ", "must lie between")
+change('"gamma": 1.4', '"gamma": @"high"', "/materials/gas/eos/gamma: ")
+change('"material": "gas"', '"material": "gas", @"colums": {}', 'unknown key "colums" (did you mean "columns"?)')
+case("no particles", ["check", "scene.json", "--set", "particles={}"], USAGE,
+     "--set particles={}: /particles: the scene is empty", scene=base)
+fill('{"lattice": "square", "spacing": @-0.02}', "-0.02 is not a spacing; give a positive number")
+fill('{"lattice": "square", "spacing": @0}', "0 is not a spacing; give a positive number")
+fill('{"lattice": "square", "spacing": @"fine"}', '"fine" is not a number')
+fill('{"lattice": "square", "spacing": @5}', "a spacing of 5 is too coarse")
+fill('@{"lattice": "square"}', "the fill's size is missing")
+fill('@{"lattice": "square", "spacing": 0.02, "count": 50}', "the fill's size is given twice")
+fill('{"lattice": @"sqare", "spacing": 0.02}', 'unknown lattice "sqare" (did you mean "square"?)')
+fill('{"lattice": @"fcc", "spacing": 0.02}', 'the lattice "fcc" needs 3 dimensions')
+fill('@{"spacing": 0.02}', 'one of "lattice", "glass" and "file"')
+fill("@[]", "/particles/fluid/fill: no fill")
+fill('{"lattice": "square", "count": @1000000000}', "1e+09 particles", "GiB", '"limits"')
+fill('{"lattice": "square", "spacing": @1e-9}', "1e+09 particles")
+fill('{"glass": {}, "count": @1000000000}', "1e+09 particles")
+fill('[{"lattice": "square", "spacing": 0.02}, @{"lattice": "square", "spacing": 0.02, '
+     '"in": {"box": {"min": [0.4], "max": [0.6]}}}]',
+     "/particles/fluid/fill/1: this fill overlaps /particles/fluid/fill/0")
+fill('{"lattice": "square", "spacing": 0.02, "in": {@"ball": {}}}', 'unknown shape "ball"')
+fill('{"lattice": "square", "spacing": 0.02, "in": {"box": @{"min": [1], "max": [0]}}}',
+     "the box is empty: along x")
+fill('{"lattice": "square", "spacing": 0.02, "in": @{"intersection": [{"box": {"min": [0], "max": '
+     '[0.2]}}, {"box": {"min": [0.5], "max": [1]}}]}}', "there are no particles inside this shape")
+fill('@{"lattice": "square", "spacing": 0.02, "in": {"box": {"min": [0], "max": [1.5]}}}',
+     "lies outside the domain, beyond its mirror side")
+change('"rho": 1, ', "", "the particles' mass is unknown")
+change('"rho": 1', '"rho": @-1', "/particles/fluid/fields/rho: the density is -1")
+change('"rho": 1', '"rho": @true', "true is neither a number nor an expression")
+change('"rho": 1', '"rho": 1, @"rhoo": 1', 'unknown field "rhoo" (did you mean "rho"?)')
+change('"rho": 1', '"rho": @"1 +"', '"1 +": the expression ends too early')
+change('"rho": 1', '"rho": @"1 + q"', '"1 + q": column 5: unknown name "q"')
+change('"rho": 1', '"rho": @"sqrt(x - 0.5)"', "gives rho = NaN at x = 0.01")
+change('"rho": 1', '"rho": @"1 / (x - 0.01)"', "gives rho = infinity at x = 0.01")
+change('"v": [0]', '"v": @[0, 0]', "/particles/fluid/fields/v: 2 components of a vector in 1 dimension")
+change('"scheme": {"name": "gsph"},', "", 'the key "scheme" is missing', "scene.json:1:1: ")
+change('"name": "gsph"', '"name": "gshp"', 'no scheme "gshp"', '(did you mean "gsph"?)')
+change('"name": "gsph"', '"name": "gsph", "riemannn": @"exact"', "/scheme/riemannn: ", '"riemann"')
+change('"name": "gsph"', '"name": "gsph", "riemann": @"exakt"', "/scheme/riemann: ", "exact")
+change('"name": "gsph"', '"name": "gsph", "edit": [@{"delete": "nothing"}]', "/scheme/edit/0: ", '"nothing"')
+change('"name": "gsph"', '"name": "gsph", "edit": [@{}]', "/scheme/edit/0: an edit has one of")
+change('"wendland-c4"', '@"wendland-c3"', "/kernel: ", '"wendland-c3"', "did you mean")
+change('"integrator": "kdk"', '"integrator": "kkd"', '"kkd"', '(did you mean "kdk"?)')
+change('"end": 0.01', '"end": @-0.01', "/time/end: the end -0.01 is not after the begin 0")
+change(', "end": 0.01', "", 'the key "end" is missing', "/time: ")
+change('"end": 0.01', '"end": 0.01, "cfl": @-1', "/time/cfl: -1 is not a time-step number")
+change('"exact": "riemann"', '"exact": "rieman"', '"rieman"', '(did you mean "riemann"?)')
+change('"where": "r > 0.1"', '"where": @"r >"', '/compare/0/where: "r >": the expression ends too early')
+change('"array": "fluid", "mean"', '"array": @"fluit", "mean"', 'unknown array "fluit" (did you mean "fluid"?)')
+change('"mean": "rho"', '"mean": "roh"', "/probes/0", '"roh"', '(did you mean "rho"?)')
+change('"every": 0.005', '"every": @0', "/output/every: 0 is not a time interval")
+change('"every": 0.005', '@"checkpoint": {"steps": 10}', "checkpoints are not available in this version")
+change('"output":', '"boundaries": [{"name": "wall"}], "output":', "/boundaries/0", '"wall"')
+
+# -- Particles out of files ----------------------------------------------------------------------
+
+for name, parts in (
+        ("cell.csv", ('cell.csv:3:5: "one" in column "m" is not a number',)),
+        ("ragged.csv", ("ragged.csv:3: 2 cells for 3 columns",)),
+        ("headless.csv", ("headless.csv:1:1: 0.1 is a number; a line of column names",)),
+        ("stranger.csv", ('column "rhoo" is no property (did you mean "rho"?)',)),
+        ("no-x.csv", ('no column "x"',)),
+        ("no-rows.csv", ("no particles",)),
+        ("twins.csv", ("same place",)),
+        ("nowhere.csv", ("nowhere.csv: cannot be read: No such file",)),
+        ("base.json", ("base.json:2:", "not a number")),
+        (".", ("is a folder",))):
+    fill('{"file": @"%s"}' % name, "/particles/fluid/fill/file: ", *parts, without='"rho": 1, ',
+         copy=[name] if os.path.isfile(os.path.join(folder, name)) else [])
+fill('{"file": "a.csv", @"spacin": 1}', '(did you mean "spacing"?)')
+fill('{"file": "no-x.csv", "rename": {@"X": "x"}}', 'the file has no column "X"', copy=["no-x.csv"])
+
+# -- Plugins -------------------------------------------------------------------------------------
+
+change('["kernels", "eos", "gsph", "exact"]', "[]", 'no scheme "gsph"', "--load")
+change('["kernels", "eos", "gsph", "exact"]', '["kernels", "eos", "exact"]', 'no scheme "gsph"')
+change('["kernels", "eos", "gsph", "exact"]', '["kernels", "eos", "gshp"]', '"gshp"', code=REFUSED)
+change('["kernels", "eos", "gsph", "exact"]', '["eos", @7]', "/plugins/1: 7 is not a name")
+case("a plugin that is a text", ["check", "scene.json", "--load", "./scene.json"], REFUSED, "scene.json",
+     scene=base)
+case("a plugin that is a folder", ["check", "scene.json", "--load", "./"], REFUSED, scene=base)
+
+# -- The command line ----------------------------------------------------------------------------
+
+case("no argument", [], USAGE, "no scene is given")
+case("no scene", ["run"], USAGE, "no scene is given")
+case("two scenes", ["run", "a.json", "b.json"], USAGE, "one scene at a time")
+case("unknown command", ["rnu"], USAGE, '"rnu"', 'did you mean "run"?')
+case("unknown option", ["run", "scene.json", "--thread-count=2"], USAGE, "--thread-count", scene=base)
+case("negative threads", ["run", "scene.json", "--threads=-2"], USAGE, "threads", "-2", scene=base)
+case("no threads", ["run", "scene.json", "--threads=0"], USAGE, "threads", "0", scene=base)
+case("threads in words", ["run", "scene.json", "--threads=two"], USAGE, "threads", "two", scene=base)
+case("negative steps", ["run", "scene.json", "--steps=-1"], USAGE, "steps", "-1", scene=base)
+case("until before begin", ["run", "scene.json", "--until=-1"], USAGE, "-1", "begin", scene=base)
+case("until NaN", ["run", "scene.json", "--until=nan"], USAGE, "nan", scene=base)
+case("no such device", ["run", "scene.json", "--device=abacus"], USAGE, "abacus", scene=base)
+case("set without a value", ["run", "scene.json", "--set", "time.end"], USAGE,
+     "--set time.end: give PATH=VALUE", scene=base)
+case("set of nothing", ["run", "scene.json", "--set", "time.end="], USAGE, "a value is missing", scene=base)
+case("set of an unknown key", ["run", "scene.json", "--set", "time.ende=1"], USAGE,
+     "--set time.ende=1: /time/ende: unknown key", '(did you mean "end"?)', scene=base)
+case("set within a number", ["run", "scene.json", "--set", "dimensions.x=1"], USAGE,
+     "--set dimensions.x=1: ", "has no members", scene=base)
+case("set of half a value", ["run", "scene.json", "--set", "time={\"end\":"], USAGE, "--set time=", scene=base)
+case("set beyond an array", ["run", "scene.json", "--set", "compare.5.exact=a"], USAGE, "not an index",
+     scene=base)
+case("set of a wrong value", ["run", "scene.json", "--set", "time.end=soon"], USAGE,
+     '--set time.end=soon: /time/end: "soon" is not a number', scene=base)
+case("render nothing", ["render", "nowhere.vtkhdf"], USAGE, "nowhere.vtkhdf")
+case("render a text", ["render", "scene.json"], USAGE, "scene.json", scene=base)
+case("info of nothing", ["info", "gshp"], USAGE, "gshp")
+
+# -- Output --------------------------------------------------------------------------------------
+
+case("output into a file", ["run", "scene.json", "--out", "scene.json"], USAGE, "scene.json", "folder",
+     scene=base)
+case("output below a file", ["run", "scene.json", "--out", "scene.json/out"], USAGE, "scene.json", scene=base)
+case("output where nothing can be", ["run", "scene.json", "--out", "/proc/sph-out"], USAGE, "/proc/sph-out",
+     scene=base)
+case("output without a name", ["run", "scene.json", "--out", ""], USAGE, "empty name", scene=base)
+case("output in use", ["run", "scene.json", "--out", "out"], USAGE, "out", "in use", scene=base, held=True)
+case("files may be 4 KiB", ["run", "scene.json", "--out", "out"], RUN, "out", scene=base, file_size=4096)
+case("files may be 20 bytes", ["run", "scene.json", "--out", "out"], RUN, "out", scene=base, file_size=20)
+case("disk full", ["run", "scene.json", "--out", "full/out"], RUN, "full/out", "No space left",
+     scene=base, disk="size=24k")
+case("disk full at once", ["run", "scene.json", "--out", "full/out"], (RUN, USAGE), "full/out",
+     "No space left", scene=base, disk="size=4k,nr_inodes=2")
+case("standard output full", ["check", "scene.json"], RUN, "standard output", scene=base,
+     stdout="/dev/full")
+
+
+class Failure(Exception):
+    pass
+
+
+def expect(good, what):
+    if not good:
+        raise Failure(what)
+
+
+@contextlib.contextmanager
+def small_disk(options, where):
+    """A small file system at `where`; yields False where none can be made."""
+    os.mkdir(where)
+    made = subprocess.run(["mount", "-t", "tmpfs", "-o", options, "sph-test", where],
+                          stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
+    try:
+        yield made.returncode == 0
+    finally:
+        if made.returncode == 0:
+            subprocess.run(["umount", where], check=False)
+
+
+def prepare(work, more):
+    for name in more.get("copy", []):
+        shutil.copy(os.path.join(folder, name), work)
+    if "scene" in more:
+        with open(os.path.join(work, "scene.json"), "w", encoding="utf-8") as out:
+            out.write(more["scene"])
+    if "binary" in more:
+        with open(os.path.join(work, "scene.json"), "wb") as out:
+            out.write(more["binary"])
+    if "link" in more:
+        os.symlink(more["link"][0], os.path.join(work, more["link"][1]))
+
+
+def check_message(stderr, parts):
+    lines = stderr.splitlines()
+    # argp adds where help is to be had.
+    if len(lines) == 2 and lines[1].startswith("Try `sph"):
+        lines.pop()
+    expect(len(lines) == 1, f"{len(lines)} lines on stderr:\n{stderr}")
+    expect(lines[0].startswith("sph"), f"the line does not begin with the program's name: {lines[0]}")
+    for part in parts:
+        expect(part in lines[0], f"{part!r} is not in: {lines[0]}")
+
+
+def check_rest(out, started):
+    """Nothing half written: no files aside, no lock, no results if it never started."""
+    names = sorted(os.listdir(out)) if os.path.isdir(out) else []
+    if not started:
+        expect(not names, f"left behind: {names}")
+        return
+    for name in names:
+        path = os.path.join(out, name)
+        expect(not name.startswith("."), f"left behind: {names}")
+        if name.endswith(".vtkhdf"):
+            with open(path, "rb") as snapshot:
+                expect(snapshot.read(8) == b"\x89HDF\r\n\x1a\n", f"{name} is damaged")
+        if name == "summary.json":
+            with open(path, encoding="utf-8") as summary:
+                expect(json.load(summary)["status"] != "done", "the summary says that all went well")
+
+
+def run_case(name, arguments, code, parts, more, work):
+    prepare(work, more)
+    before = sorted(os.listdir(work))
+
+    def limit():
+        if "file_size" in more:
+            resource.setrlimit(resource.RLIMIT_FSIZE, (more["file_size"], more["file_size"]))
+        resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+
+    with contextlib.ExitStack() as stack:
+        if "disk" in more and not stack.enter_context(
+                small_disk(more["disk"], os.path.join(work, "full"))):
+            return False
+        if "held" in more:
+            os.mkdir(os.path.join(work, "out"))
+            lock = stack.enter_context(open(os.path.join(work, "out", ".sph-lock"), "w", encoding="utf-8"))
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        stdout = stack.enter_context(open(more.get("stdout", os.devnull), "w", encoding="utf-8"))
+        done = subprocess.run([sph, *arguments], cwd=work, stdout=stdout, stderr=subprocess.PIPE,
+                              preexec_fn=limit, timeout=120, check=False)
+        stderr = done.stderr.decode("utf-8", "backslashreplace")
+        codes = code if isinstance(code, tuple) else (code,)
+        expect(done.returncode in codes, f"exit status {done.returncode}, not {code}:\n{stderr}")
+        check_message(stderr, parts)
+        if "held" in more:
+            expect(os.listdir(os.path.join(work, "out")) == [".sph-lock"], "the folder in use was touched")
+            return True
+        check_rest(os.path.join(work, "full/out" if "disk" in more else "out"), done.returncode == RUN)
+        left = [n for n in os.listdir(work) if n not in before + ["out", "full"]]
+        expect(not left, f"left behind: {left}")
+    return True
+
+
+def main():
+    if not os.access(sph, os.X_OK):
+        print(f"{sph} is not there")
+        return 1
+    failures = skipped = 0
+    for name, arguments, code, parts, more in cases:
+        with tempfile.TemporaryDirectory(prefix="sph-wrong-") as work:
+            try:
+                if not run_case(name, arguments, code, parts, more, work):
+                    skipped += 1
+                    print(f"skipped: {name}: no file system can be mounted here")
+            except (Failure, subprocess.TimeoutExpired) as problem:
+                failures += 1
+                print(f"FAILED: {name}: {problem}")
+    print(f"{len(cases)} wrong inputs, {failures} not answered as they should be, {skipped} skipped")
+    return 1 if failures else 0
+
+
+sys.exit(main())

@@ -173,13 +173,23 @@ static int add_integrator_columns(struct plan *plan, struct error *e)
     return 0;
 }
 
+static void hide_work(struct plan *plan, const struct pass *p)
+{
+    for (uint32_t k = 0; k < p->use.item->props.count; k++) {
+        const sph_prop *prop = list_at(&p->use.item->props, k);
+        if (prop->access & SPH_WORK)
+            plan->array[p->dst.array].p.column[p->dst.column[k]].output = false;
+    }
+}
+
 int columns_finish(struct plan *plan, struct error *e)
 {
     for (size_t i = 0; i < plan->n_pass; i++) {
         const struct pass *p = &plan->pass[i];
         /* What no evaluation makes anew must outlive the sorts. */
         for (uint32_t k = 0; p->moment != MOMENT_EVALUATE && k < p->use.item->props.count; k++)
-            plan->array[p->dst.array].p.column[p->dst.column[k]].state = true;
+            if (pass_writes(p, p->dst.array, p->dst.column[k]))
+                plan->array[p->dst.array].p.column[p->dst.column[k]].state = true;
         if (p->function && add_rates(plan, &p->function->rates, p->dst.array, e))
             return -1;
     }
@@ -199,5 +209,7 @@ int columns_finish(struct plan *plan, struct error *e)
             pa->p.column[c].output = !strchr(pa->p.column[c].name, '.');
         }
     }
+    for (size_t i = 0; i < plan->n_pass; i++)
+        hide_work(plan, &plan->pass[i]);
     return 0;
 }

@@ -136,12 +136,12 @@ static int check_params(const sph_list *params, struct error *e)
 static int check_prop(const sph_prop *p, struct error *e)
 {
     const uint32_t sets = p->access & (SPH_DST_WRITE | SPH_DST_SUM | SPH_DST_MAX | SPH_DST_MIN);
-    const uint32_t known = sets | (p->access & (SPH_DST_READ | SPH_SRC_READ));
+    const uint32_t known = sets | (p->access & (SPH_DST_READ | SPH_SRC_READ | SPH_WORK));
 
     if (p->type < SPH_SCALAR || p->type > SPH_INT64)
         return error_set(e, EXIT_REFUSED, "type of property \"%s\" is %u, which is unknown",
                          p->name, p->type);
-    if (p->access == 0)
+    if ((p->access & ~SPH_WORK) == 0)
         return error_set(e, EXIT_REFUSED, "access of property \"%s\" is none", p->name);
     if (p->access != known)
         return error_set(e, EXIT_REFUSED, "access of property \"%s\" has unknown bits (0x%x)",

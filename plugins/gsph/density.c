@@ -18,9 +18,9 @@ static const sph_prop props[] = {
     {"m", "kg", "mass", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN},
     {"h", "m", "smoothing length", SPH_SCALAR, SPH_DST_UPDATE, NAN},
     {"rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_SUM, 0.0},
-    {"drho_dh", "kg/m^(d+1)", "derivative of the summed density with h", SPH_SCALAR, SPH_DST_SUM,
-     0.0},
-    {"h_busy", "", "1 while the iteration of h goes on", SPH_INT32, SPH_DST_WRITE, 0.0},
+    {"drho_dh", "kg/m^(d+1)", "derivative of the summed density with h", SPH_SCALAR,
+     SPH_DST_SUM | SPH_WORK, 0.0},
+    {"h_busy", "", "1 while the iteration of h goes on", SPH_INT32, SPH_DST_WRITE | SPH_WORK, 0.0},
 };
 
 #define SPH_LOOP sweep

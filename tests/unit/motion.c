@@ -188,7 +188,7 @@ FUNCTION(gather, "gather", SPH_NO_LIST) = {.size = SIZE(sph_function),
                                            .reach = SPH_GATHER,
                                            .reach_scale = 1};
 
-static sph_status both_run(const sph_batch *b)
+static sph_status wide_run(const sph_batch *b)
 {
     for (uint64_t i = b->first; i < b->first + b->count; i++)
         for (uint64_t k = b->begin[i / SPH_LANES]; k < b->begin[i / SPH_LANES + 1]; k++) {
@@ -200,15 +200,15 @@ static sph_status both_run(const sph_batch *b)
     return SPH_OK;
 }
 
-static const sph_prop both_props[] = {
+static const sph_prop wide_props[] = {
     {"m", "", "", SPH_SCALAR, SPH_SRC_READ, NAN},
     {"q", "", "", SPH_SCALAR, SPH_SRC_READ, NAN},
     {"both", "", "", SPH_SCALAR, SPH_DST_SUM, 0},
 };
-FUNCTION(both, "gather-both", SPH_NO_LIST) = {.size = SIZE(sph_function),
+FUNCTION(wide, "gather-both", SPH_NO_LIST) = {.size = SIZE(sph_function),
                                               .shape = SPH_PAIR,
-                                              .item = &both_item,
-                                              .run = both_run,
+                                              .item = &wide_item,
+                                              .run = wide_run,
                                               .reach = SPH_SYMMETRIC,
                                               .reach_scale = 1};
 
@@ -263,7 +263,7 @@ static const sph_scheme coast = {
     SIZE(sph_scheme), 0, &coast_item, "thing", "kdk", 0.25, SPH_LIST(coast_steps), SPH_LIST(rates)};
 
 const struct rig_items motion_items = {
-    {&spring, &bound, &measure, &count_up, &breathe, &shade, &gather, &both, &widen, NULL},
+    {&spring, &bound, &measure, &count_up, &breathe, &shade, &gather, &wide, &widen, NULL},
     {NULL},
     {&swing, &coast, NULL}};
 

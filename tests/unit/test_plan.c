@@ -166,12 +166,12 @@ static const struct rig_items items = {
     "{'dimensions':1,'domain':{'min':[0],'max':[1]},'materials':{'gas':{'eos':{'name':'gas'}}},"
 #define FLUID_WITH(fields)                                                                         \
     "'fluid':{'material':'gas','fill':{'lattice':'square','in':{'box':{'min':[0],'max':[0.5]}},"   \
-    "'count':10},'fields':{" fields "}}"
-#define FLUID FLUID_WITH("'rho':1,'u':2,'colour':1")
+    "'count':10},'fields':{" fields "}"
+#define FLUID FLUID_WITH("'rho':1,'u':2") ",'columns':{'colour':1}}"
 /* No material. */
 #define WALL                                                                                       \
     "'wall':{'fill':{'lattice':'square','in':{'box':{'min':[0.5],'max':[1]}},'count':4},"          \
-    "'fields':{'rho':1,'p':1,'colour':1}}"
+    "'fields':{'rho':1},'columns':{'colour':1,'p':1}}"
 #define ONE(scheme) HEAD "'particles':{" FLUID "},'scheme':" scheme ",'time':{'end':1}}"
 #define TWO(scheme) HEAD "'particles':{" FLUID "," WALL "},'scheme':" scheme ",'time':{'end':1}}"
 #define EDIT(edit) "{'name':'flow','edit':[" edit "]}"
@@ -407,9 +407,9 @@ static void test_unknown(void **state)
                 ONE(EDIT("{'delete':'pus'}")));
     rig_refused(&items, "the recipe has no step \"sum\"",
                 ONE(EDIT("{'delete':'sum'},{'delete':'sum'}")));
-    rig_refused(&items, "no particle array \"fluids\" (did you mean \"fluid\"?)",
+    rig_refused(&items, "unknown array \"fluids\" (did you mean \"fluid\"?)",
                 ONE(EDIT("{'insert':'mark','to':'fluids'}")));
-    rig_refused(&items, "no particle array \"wal\"",
+    rig_refused(&items, "unknown array \"wal\"",
                 TWO(EDIT("{'insert':'sum','from':['fluid','wal']}")));
     rig_refused(&items, "no integrator \"kkd\" (did you mean \"kdk\"?)",
                 HEAD "'particles':{" FLUID
@@ -434,8 +434,8 @@ static void test_reports(void **state)
     (void)state;
 #define PROBE(probe)                                                                               \
     HEAD "'particles':{" FLUID "},'scheme':'flow','time':{'end':1},'probes':[" probe "]}"
-    rig_refused(&items, "array \"fluid\" has no property \"rh\" (did you mean \"rho\"?)",
-                PROBE("{'name':'a','array':'fluid','mean':'rh'}"));
+    rig_refused(&items, "array \"fluid\" has no property \"rhoo\" (did you mean \"rho\"?)",
+                PROBE("{'name':'a','array':'fluid','mean':'rhoo'}"));
     rig_refused(&items, "no exact solution \"e\" is registered",
                 HEAD "'particles':{" FLUID "},'scheme':'flow','time':{'end':1},"
                      "'compare':[{'array':'fluid','exact':'e'}]}");
@@ -532,7 +532,8 @@ static void test_parameters(void **state)
 
 /* -- First state --------------------------------------------------------------------------------- */
 
-#define FIELDS(fields) HEAD "'particles':{" FLUID_WITH(fields) "},'scheme':'flow','time':{'end':1}}"
+#define FIELDS(fields)                                                                             \
+    HEAD "'particles':{" FLUID_WITH(fields) "}},'scheme':'flow','time':{'end':1}}"
 
 static void test_first_state(void **state)
 {

@@ -129,16 +129,19 @@ static int check_operation(struct plan *plan, const struct pass *p, const struct
     }
     for (uint32_t k = 0; s->of && k < p->use.item->props.count; k++) {
         const sph_prop *prop = list_at(&p->use.item->props, k);
-        sets = sets || ((prop->access & (SPH_DST_WRITE | SPH_DST_SUM | SPH_DST_MAX | SPH_DST_MIN)) &&
-                        strcmp(prop->name, s->of) == 0);
+        sets =
+            sets || ((prop->access & (SPH_DST_WRITE | SPH_DST_SUM | SPH_DST_MAX | SPH_DST_MIN)) &&
+                     strcmp(prop->name, s->of) == 0);
     }
     if (strcmp(operation, "summation") == 0 && p->shape != SPH_PAIR)
-        return document_fail(d, s->node, e, "%s is no summation: it sums over no neighbours", s->name);
+        return document_fail(d, s->node, e, "%s is no summation: it sums over no neighbours",
+                             s->name);
     if (strcmp(operation, "assignment") == 0 && p->shape == SPH_PAIR)
-        return document_fail(d, s->node, e, "%s is no assignment: it sums over neighbours", s->name);
+        return document_fail(d, s->node, e, "%s is no assignment: it sums over neighbours",
+                             s->name);
     if (integration && !rate)
-        return document_fail(d, s->node, e, "%s is no integration: it declares no rate%s%s%s", s->name,
-                             s->of ? " of \"" : "", s->of ? s->of : "", s->of ? "\"" : "");
+        return document_fail(d, s->node, e, "%s is no integration: it declares no rate%s%s%s",
+                             s->name, s->of ? " of \"" : "", s->of ? s->of : "", s->of ? "\"" : "");
     if (s->of && !integration && !sets && (s->operation || !rate))
         return document_fail(d, s->node, e, "%s does not set \"%s\"", s->name, s->of);
     return 0;

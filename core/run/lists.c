@@ -99,12 +99,31 @@ static int sort_array(struct run *r, size_t array, struct error *e)
     return status;
 }
 
+/* How far a particle stands outside the box. Nothing is wrapped in the midst of an evaluation, so it may have
+ * left by what it moved since its start. */
+static double largest_overshoot(const struct run *r)
+{
+    const struct box *box = &r->plan->scene->box;
+    double most = 0.0;
+    for (size_t a = 0; box->bounded && a < r->plan->n_array; a++)
+        for (int c = 0; c < r->plan->dim; c++) {
+            const double *x = position(&r->plan->array[a], c);
+            for (size_t i = 0; i < r->plan->array[a].p.n; i++) {
+                if (box->side[c][0] != SIDE_OPEN)
+                    most = fmax(most, box->min[c] - x[i]);
+                if (box->side[c][1] != SIDE_OPEN)
+                    most = fmax(most, x[i] - box->max[c]);
+            }
+        }
+    return most;
+}
+
 static int make_ghosts(struct run *r, struct error *e)
 {
     double margin = 0.0;
     for (size_t a = 0; a < r->plan->n_array; a++)
         margin = fmax(margin, largest_h(&r->plan->array[a]));
-    margin *= support(r->plan) * (1.0 + r->skin);
+    margin = margin * support(r->plan) * (1.0 + r->skin) + largest_overshoot(r);
     for (size_t a = 0; a < r->plan->n_array; a++) {
         struct particles *p = &r->plan->array[a].p;
         if (particles_resize(p, p->n, 0, e) ||

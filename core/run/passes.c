@@ -292,7 +292,8 @@ int run_passes(struct run *r, enum moment moment, struct error *e)
     for (size_t i = 0; i < r->plan->n_reduction; i++) {
         const struct reduction *d = &r->plan->reduction[i];
         r->reduced[i] = reduce(r->plan, d);
-        if (d->declared->use == SPH_USE_TIME_STEP && !isnan(r->dt_bound) && !(r->reduced[i] >= r->dt_bound))
+        if (d->declared->use == SPH_USE_TIME_STEP && !isnan(r->dt_bound) &&
+            !(r->reduced[i] >= r->dt_bound))
             r->dt_bound = r->reduced[i]; /* a NaN stays */
     }
     return 0;

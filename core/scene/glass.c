@@ -17,7 +17,7 @@
 struct cells {
     size_t n, capacity, n_cell;
     size_t side[3];
-    double low[3], reach;
+    double low[3], width[3], reach;
     double *x[3];      /* [n], as made: the points, then images */
     double *sorted[3]; /* [n], by cell */
     size_t *parent;    /* [n]: the point; SIZE_MAX for images; by cell */
@@ -84,7 +84,7 @@ static int add_images(struct cells *c, const struct glass *g, int a)
 
 static size_t cell_index(const struct cells *c, int a, double x)
 {
-    double k = floor((x - c->low[a]) / c->reach);
+    double k = floor((x - c->low[a]) / c->width[a]);
     if (!(k > 0))
         return 0;
     return k < (double)(c->side[a] - 1) ? (size_t)k : c->side[a] - 1;
@@ -98,16 +98,33 @@ static size_t cell_of(const struct cells *c, int dim, size_t i)
     return cell;
 }
 
+/* Cells as wide as the reach; wider ones where a long thin box would have many more than points. */
+static void size_cells(struct cells *c, const struct glass *g)
+{
+    double side[3] = {1, 1, 1}, most = 4 * (double)c->n + 64;
+    for (int a = 0; a < g->dim; a++) {
+        c->low[a] = g->min[a] - c->reach;
+        c->width[a] = c->reach;
+        side[a] = floor((g->max[a] - g->min[a]) / c->reach) + 3;
+    }
+    while (side[0] * side[1] * side[2] > most) {
+        int longest = 0;
+        for (int a = 1; a < g->dim; a++)
+            longest = side[a] > side[longest] ? a : longest;
+        c->width[longest] *= 2;
+        side[longest] = floor((g->max[longest] - g->min[longest]) / c->width[longest]) + 3;
+    }
+    c->n_cell = 1;
+    for (int a = 0; a < 3; a++) {
+        c->side[a] = (size_t)side[a];
+        c->n_cell *= c->side[a];
+    }
+}
+
 /* A counting sort: within a cell in the order of the points. */
 static int sort_cells(struct cells *c, const struct glass *g)
 {
-    c->n_cell = 1;
-    for (int a = 0; a < 3; a++) {
-        double width = a < g->dim ? g->max[a] - g->min[a] : 0;
-        c->low[a] = g->min[a] - c->reach;
-        c->side[a] = a < g->dim ? (size_t)(width / c->reach) + 3 : 1;
-        c->n_cell *= c->side[a];
-    }
+    size_cells(c, g);
     if (c->n_cell + 1 > c->begin_capacity) {
         size_t *begin = realloc(c->begin, (c->n_cell + 1) * sizeof *begin);
         if (!begin)

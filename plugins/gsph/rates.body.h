@@ -36,22 +36,23 @@ if (limiter > 0.5) {
     u_r -= 0.5 * GSPH_LIMIT(u_step, du_r, u_cap);
 }
 const R gamma_l = rho_j * cs_j * cs_j / p_j, gamma_r = rho_i * cs_i * cs_i / p_i;
-const R c_l = sph_sqrt(gamma_l * p_l / rho_l), c_r = sph_sqrt(gamma_r * p_r / rho_r);
+const R per_rho2 = 1.0 / (rho_l * rho_r);
+const R c2_l = gamma_l * p_l * rho_r * per_rho2, c2_r = gamma_r * p_r * rho_l * per_rho2;
 
 /* Wave impedances by the shock relation of an ideal gas, q the jump's share: s = q + sqrt(q^2 + c^2); the
  * star velocity is guessed from the Roe average and refined. */
 const R root_l = sph_sqrt(rho_l), root_r = sph_sqrt(rho_r);
 R u_star = (root_l * u_l + root_r * u_r) / (root_l + root_r);
-R p_star = sph_num(0.0);
-for (int k = 0; k < 2; k++) {
+R z_l = root_l, z_r = root_r, per_z = root_l;
+for (int n = 0; n < 2; n++) {
     const R q_l = sph_max(0.25 * (gamma_l + 1.0) * (u_l - u_star), sph_num(0.0));
     const R q_r = sph_max(0.25 * (gamma_r + 1.0) * (u_star - u_r), sph_num(0.0));
-    const R z_l = rho_l * (q_l + sph_sqrt(q_l * q_l + c_l * c_l));
-    const R z_r = rho_r * (q_r + sph_sqrt(q_r * q_r + c_r * c_r));
-    u_star = (z_l * u_l + z_r * u_r + p_l - p_r) / (z_l + z_r);
-    p_star = (z_r * p_l + z_l * p_r + z_l * z_r * (u_l - u_r)) / (z_l + z_r);
+    z_l = rho_l * (q_l + sph_sqrt(q_l * q_l + c2_l));
+    z_r = rho_r * (q_r + sph_sqrt(q_r * q_r + c2_r));
+    per_z = 1.0 / (z_l + z_r);
+    u_star = (z_l * u_l + z_r * u_r + p_l - p_r) * per_z;
 }
-p_star = sph_max(p_star, sph_num(0.0));
+R p_star = sph_max((z_r * p_l + z_l * p_r + z_l * z_r * (u_l - u_r)) * per_z, sph_num(0.0));
 #include "exact.body.h"
 
 /* The force of the pair: geometric mean of the volumes, corrected. */

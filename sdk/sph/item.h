@@ -24,7 +24,7 @@ SPH_BEGIN_DECLS
 #define SPH_DST_SUM 0x08u   /* adds to it: the host sets it to `start` before the first source */
 #define SPH_DST_MAX 0x10u   /* takes the maximum; starts as above */
 #define SPH_DST_MIN 0x20u   /* takes the minimum; starts as above */
-#define SPH_WORK 0x40u      /* with one of the above: working storage, of no interest in a snapshot */
+#define SPH_WORK 0x40u /* with one of the above: working storage, of no interest in a snapshot */
 #define SPH_DST_UPDATE (SPH_DST_READ | SPH_DST_WRITE)
 
 typedef struct sph_prop {

@@ -5,7 +5,8 @@
  *   R a = sph_num(0.5);              a constant in every lane (a * 0.5 needs none)
  *   a + b, a * b, a / b, -a          as ever;  a < b, a >= b ... give a B;  m & n, m | n, ~m
  *   sph_select(m, a, b)              a where m holds, else b
- *   sph_min, sph_max, sph_abs, sph_sqrt, sph_pow(a, b), sph_sign(a) (-1, 0, 1)
+ *   sph_min, sph_max, sph_abs, sph_sqrt, sph_sign(a) (-1, 0, 1)
+ *   sph_pow_where(m, a, b)           a^b where m holds, else 1: each lane that needs it costs
  *   sph_w(K, q), sph_dw(K, q)        kernel and its derivative in q = r / h, without powers of h
  *   sph_ipow(a, DIM)                 a small whole power
  * No branches on lanes, no calls to anything else. */
@@ -45,11 +46,12 @@ SPH_INLINE R SPH_OF_ISA(sph_sqrt_)(R a)
 }
 
 /* libm lane by lane: right to its own rounding, and slow; for bodies that cannot do without. */
-SPH_INLINE R SPH_OF_ISA(sph_pow_)(R a, R b)
+SPH_INLINE R SPH_OF_ISA(sph_pow_where_)(B m, R a, R b)
 {
-    R out;
+    R out = (R){0} + 1.0;
     for (int l = 0; l < SPH_WIDTH; l++)
-        out[l] = __builtin_pow(a[l], b[l]);
+        if (m[l])
+            out[l] = __builtin_pow(a[l], b[l]);
     return out;
 }
 

@@ -12,7 +12,7 @@
     (sph_select((a) > sph_num(0.0), sph_num(1.0), sph_num(0.0)) -                                  \
      sph_select((a) < sph_num(0.0), sph_num(1.0), sph_num(0.0)))
 #define sph_sqrt(a) SPH_OF_ISA(sph_sqrt_)(a)
-#define sph_pow(a, b) SPH_OF_ISA(sph_pow_)((a), (b))
+#define sph_pow_where(m, a, b) SPH_OF_ISA(sph_pow_where_)((B)(m), (a), (b))
 #define sph_ipow(a, n) SPH_OF_ISA(sph_ipow_)((a), (n))
 #define sph_w(kernel, q) SPH_OF_ISA(sph_w_)((kernel), (q))
 #define sph_dw(kernel, q) SPH_OF_ISA(sph_dw_)((kernel), (q))
@@ -47,7 +47,7 @@
 #undef sph_abs
 #undef sph_sign
 #undef sph_sqrt
-#undef sph_pow
+#undef sph_pow_where
 #undef sph_ipow
 #undef sph_w
 #undef sph_dw

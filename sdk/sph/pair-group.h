@@ -103,7 +103,7 @@ static sph_status SPH_LOOP_NAME(SPH_ISA)(const sph_batch *b)
 #endif
             const R r = sph_sqrt(r2);
             const R rinv = sph_select(r2 > sph_num(0.0), 1.0 / r, sph_num(0.0));
-            const R hinv_j = 1.0 / h_j;
+            const R hinv_j = sph_num(1.0 / h_s[j]);
             (void)self;
             (void)rinv;
             (void)hinv_j;

@@ -269,9 +269,24 @@ const struct rig_items motion_items = {
 
 /* -- The same by hand ---------------------------------------------------------------------------- */
 
-static const double *real(const struct plan_array *a, const char *name, int c)
+/* The columns of an array, looked up once. */
+struct view {
+    const double *x[3], *h, *m, *q, *w[3];
+    size_t n;
+};
+
+static struct view view(const struct run *r, size_t a)
 {
-    return particles_real(&a->p, name, (uint32_t)c);
+    const struct particles *p = &r->plan->array[a].p;
+    struct view v = {.n = p->n,
+                     .h = particles_real(p, "h", 0),
+                     .m = particles_real(p, "m", 0),
+                     .q = particles_real(p, "q", 0)};
+    for (int c = 0; c < p->dim; c++) {
+        v.x[c] = particles_real(p, "x", (uint32_t)c);
+        v.w[c] = particles_real(p, "w", (uint32_t)c);
+    }
+    return v;
 }
 
 /* Image `k` (0: itself, 1, 2: across the low, the high side) of x along an axis; *sign of the component of a
@@ -297,43 +312,47 @@ struct sum {
 };
 
 /* Adds what particle j of `src` and all its images give to particle i of `dst`. */
-static void add_images(const struct run *r, bool both, const struct plan_array *dst, size_t i,
-                       const struct plan_array *src, size_t j, struct sum *sum)
+static void add_images(const struct run *r, bool both, const struct view *dst, size_t i,
+                       const struct view *src, size_t j, struct sum *sum)
 {
     const int dim = r->plan->dim;
     const int images = dim == 1 ? 3 : dim == 2 ? 9 : 27;
-    const double h = both ? fmax(real(dst, "h", 0)[i], real(src, "h", 0)[j]) : real(dst, "h", 0)[i];
+    const double h = both ? fmax(dst->h[i], src->h[j]) : dst->h[i];
     for (int k = 0; k < images; k++) {
         double r2 = 0, sign[3];
         bool there = true;
         for (int c = 0, rest = k; c < dim; c++, rest /= 3) {
-            double x = real(src, "x", c)[j];
+            double x = src->x[c][j];
             there = image(&r->plan->scene->box, c, rest % 3, &x, &sign[c]) && there;
-            r2 += (real(dst, "x", c)[i] - x) * (real(dst, "x", c)[i] - x);
+            r2 += (dst->x[c][i] - x) * (dst->x[c][i] - x);
         }
         if (!there)
             continue;
-        const double mf = real(src, "m", 0)[j] * weight(sqrt(r2), MOTION_SUPPORT * h);
-        sum->s += mf * real(src, "q", 0)[j];
+        const double mf = src->m[j] * weight(sqrt(r2), MOTION_SUPPORT * h);
+        sum->s += mf * src->q[j];
         for (int c = 0; c < dim; c++)
-            sum->sv[c] += sign[c] * mf * real(src, "w", c)[j];
+            sum->sv[c] += sign[c] * mf * src->w[c][j];
     }
 }
 
 double motion_error(const struct run *r, bool both, size_t dst, const size_t *src, size_t n_src)
 {
-    const struct plan_array *to = &r->plan->array[dst];
+    const struct view to = view(r, dst);
+    const struct particles *p = &r->plan->array[dst].p;
+    const double *s = particles_real(p, both ? "both" : "s", 0);
     double worst = 0, scale = 0;
-    for (size_t i = 0; i < to->p.n; i++) {
+    for (size_t i = 0; i < to.n; i++) {
         struct sum sum = {0};
-        for (size_t s = 0; s < n_src; s++)
-            for (size_t j = 0; j < r->plan->array[src[s]].p.n; j++)
-                add_images(r, both, to, i, &r->plan->array[src[s]], j, &sum);
-        const double error = fabs(sum.s - real(to, both ? "both" : "s", 0)[i]);
+        for (size_t k = 0; k < n_src; k++) {
+            const struct view from = view(r, src[k]);
+            for (size_t j = 0; j < from.n; j++)
+                add_images(r, both, &to, i, &from, j, &sum);
+        }
+        const double error = fabs(sum.s - s[i]);
         worst = error <= worst ? worst : error; /* a NaN comes through */
         scale = fmax(scale, fabs(sum.s));
         for (int c = 0; !both && c < r->plan->dim; c++) {
-            const double vector = fabs(sum.sv[c] - real(to, "sv", c)[i]);
+            const double vector = fabs(sum.sv[c] - particles_real(p, "sv", (uint32_t)c)[i]);
             worst = vector <= worst ? worst : vector;
         }
     }

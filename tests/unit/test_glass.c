@@ -59,7 +59,7 @@ static void test_even(void **state)
         }
 }
 
-/* Without order: the same count on a lattice would have the neighbours' distances all alike. */
+/* The same seed gives the same points, another one others. */
 static void test_seeds(void **state)
 {
     struct glass a = make(2, 400, true, 1, 60), b = make(2, 400, true, 1, 60),
@@ -106,6 +106,18 @@ static void test_few(void **state)
             }
 }
 
+/* A long thin box has room for many more cells than it has points. */
+static void test_thin(void **state)
+{
+    struct glass g = {
+        .dim = 3, .n = 50, .seed = 1, .sweeps = 20, .noise = .01, .max = {1e9, 1, 1e-3}};
+    struct error e;
+    (void)state;
+    assert_int_equal(glass_make(&g, &e), 0);
+    assert_int_equal(g.done, 20);
+    glass_free(&g);
+}
+
 /* It stops when it is even enough. */
 static void test_stops(void **state)
 {
@@ -121,7 +133,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_even), cmocka_unit_test(test_seeds), cmocka_unit_test(test_threads),
-        cmocka_unit_test(test_few),  cmocka_unit_test(test_stops),
+        cmocka_unit_test(test_few),  cmocka_unit_test(test_thin),  cmocka_unit_test(test_stops),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -191,11 +191,14 @@ static void test_all_pairs(void **state)
     (void)state;
     for (size_t k = 0; k < COUNT(sides); k++) {
         struct motion m;
-        fly(&m, sides[k], 150, integrators[k], 2);
+        fly(&m, sides[k], 100, integrators[k], 1);
         assert_true(m.run.skin == 0.1);
-        for (int n = 0; n < 100; n++) {
+        for (int n = 0; n < 80; n++) {
+            /* One of them evaluates in mid-step: its sums are of other places than those at the end. */
+            if (m.rig.plan.integrator->saves_state)
+                passes(&m, MOMENT_EVALUATE);
             check_all_pairs(&m, sides[k]);
-            steps(&m, 0.003, 1);
+            steps(&m, 0.005, 1);
         }
         assert_in_range(m.run.cost.list_builds, 20, 80);
         assert_in_range(m.run.cost.sorts, 2, 10);
@@ -298,7 +301,7 @@ static void test_several_sources(void **state)
         "'fields':{'rho':2,'colour':'y','v':['-y',1],'h0':0.14}}},"
         "'scheme':{'name':'coast','edit':[{'insert':'breathe','before':'shade'},"
         "{'insert':'gather'},{'insert':'gather-both','to':'one','from':'two'}]},'time':{'end':1}}");
-    begin(&m, 2);
+    begin(&m, 1);
     passes(&m, MOMENT_EVALUATE);
     for (int n = 0; n < 30; n++) {
         assert_true(motion_error(&m.run, false, 0, all, 2) < 1e-13);
@@ -365,7 +368,7 @@ static void test_growth(void **state)
         "'particles':{'dust':{'fill':{'lattice':'square','count':400,'jitter':0.3},'h_over_dx':0.3,"
         "'fields':{'rho':1,'colour':'x','v':['y','-x']}}},'scheme':{'name':'coast','edit':["
         "{'insert':'widen','before':'shade','enough':25},{'insert':'gather'}]},'time':{'end':1}}");
-    begin(&m, 2);
+    begin(&m, 1);
     passes(&m, MOMENT_EVALUATE);
     assert_true(m.run.cost.list_builds > 2);
     assert_true(motion_error(&m.run, false, 0, itself, 1) < 1e-13);
@@ -423,16 +426,16 @@ static void test_reductions(void **state)
 
 static void test_threads(void **state)
 {
-    static const int threads[] = {2, 3, 7};
+    static const int threads[] = {2, 3, 5};
     struct motion one;
     (void)state;
-    fly(&one, PERIODIC, 2500, "kdk", 1);
-    steps(&one, 0.0005, 40);
+    fly(&one, PERIODIC, 1600, "kdk", 1);
+    steps(&one, 0.002, 40);
     assert_true(one.run.cost.sorts > 1);
     for (size_t k = 0; k < COUNT(threads); k++) {
         struct motion many;
-        fly(&many, PERIODIC, 2500, "kdk", threads[k]);
-        steps(&many, 0.0005, 40);
+        fly(&many, PERIODIC, 1600, "kdk", threads[k]);
+        steps(&many, 0.002, 40);
         const struct particles *p = &one.rig.plan.array[0].p, *q = &many.rig.plan.array[0].p;
         assert_int_equal(p->n_column, q->n_column);
         for (size_t c = 0; c < p->n_column; c++)

@@ -38,7 +38,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     }
 }
 
-const struct argp scene_argp = {.options = options, .parser = parse, .args_doc = "SCENE.json"};
+const struct argp scene_argp = {.options = options, .parser = parse};
 
 int loaded_make(struct loaded *l, const struct scene_options *o, bool guarded, struct error *e)
 {

@@ -97,13 +97,13 @@ static void print_pass(const struct plan *plan, const struct pass *p, size_t num
 static void print_array(const struct plan *plan, size_t index, FILE *out)
 {
     const struct plan_array *a = &plan->array[index];
-    fprintf(
-        out, "  %s: %llu particles, %zu columns, %zu bytes a particle (lists: about %.0f more)\n",
-        a->p.name, (unsigned long long)count(plan, index), a->p.n_column, particles_bytes(&a->p),
-        plan->has_kernel ? 4.0 * (neighbours(plan, a) * 2.0) / SPH_LANES * 2.0 : 0.0);
+    fprintf(out, "  %s: %llu particles, %zu columns, %zu bytes a particle (lists: %.0f more)\n",
+            a->p.name, (unsigned long long)count(plan, index), a->p.n_column,
+            particles_bytes(&a->p),
+            plan->has_kernel ? 4.0 * (neighbours(plan, a) * 2.0) / SPH_LANES * 2.0 : 0.0);
     for (size_t c = 0; c < a->p.n_column; c++) {
         const struct column *column = &a->p.column[c];
-        fprintf(out, "    %-8s %-17s %-6s %-12s %s\n", column->name, type_name(column->type),
+        fprintf(out, "    %-8s %-16s %-5s %-12s %.31s\n", column->name, type_name(column->type),
                 column->state ? "state" : "", column->unit ? column->unit : "",
                 column->doc ? column->doc : "");
     }
@@ -178,7 +178,7 @@ void plan_print(const struct plan *plan, FILE *out)
     double pairs = expected_pairs(plan);
     fprintf(out, "expected\n  pairs a step     %.3g\n", pairs);
     if (isfinite(pairs) && pairs > 0.0)
-        fprintf(out, "  seconds a step   %.2g (at 5 ns a pair, one thread)\n", 5e-9 * pairs);
+        fprintf(out, "  seconds a step   %.2g (at 20 ns a pair, one thread)\n", 20e-9 * pairs);
 }
 
 static void add_names(cJSON *to, const char *key, const struct pass *p, uint32_t access)

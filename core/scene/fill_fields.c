@@ -304,7 +304,7 @@ static int set_fields(struct particles *p, const struct scene *s, size_t a, size
     }
     for (size_t i = 0; i < array->n_column; i++) {
         int c = particles_find(p, array->column[i].name);
-        if (c < 0)
+        if (c < 0 || given[c]) /* by a field, or restored from a file */
             continue;
         if (!fill_field(array, k, array->column[i].name) &&
             set_column(p, s, c, array->column[i].name, array->column[i].node, first, n, e) < 0)

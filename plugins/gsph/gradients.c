@@ -19,8 +19,8 @@ static const sph_prop props[] = {
     {"v", "m/s", "velocity", SPH_VECTOR, SPH_DST_READ | SPH_SRC_READ, 0.0},
     {"grad_rho", "kg/m^(d+1)", "gradient of the density", SPH_VECTOR, SPH_DST_SUM | SPH_WORK, 0.0},
     {"grad_p", "J/m^(d+1)", "gradient of the pressure", SPH_VECTOR, SPH_DST_SUM | SPH_WORK, 0.0},
-    {"grad_v", "1/s", "gradient of the velocity: row c is that of component c", SPH_MATRIX,
-     SPH_DST_SUM | SPH_WORK, 0.0},
+    {"grad_v", "1/s", "velocity gradient, a row a component", SPH_MATRIX, SPH_DST_SUM | SPH_WORK,
+     0.0},
     {"moment", "", "moment matrix of the gradients", SPH_MATRIX, SPH_DST_SUM | SPH_WORK, 0.0},
     {"volume", "", "volume correction of the forces", SPH_SCALAR, SPH_DST_SUM | SPH_WORK, 0.0},
 };

@@ -265,7 +265,7 @@ static void test_glass(void **state)
 static void test_file(void **state)
 {
     char path[] = "/tmp/sph-test-fill-XXXXXX", text[512];
-    static const char csv[] = "x,y,v.x,rho,m,junk\n0,0,1,2,0.02,9\n0.1,0,3,2,0.02,9\n";
+    static const char csv[] = "x,y,v.x,rho,m,junk,tracer\n0,0,1,2,0.02,9,7\n0.1,0,3,2,0.02,9,8\n";
     struct made m;
     int fd = mkstemp(path);
     (void)state;
@@ -274,12 +274,14 @@ static void test_file(void **state)
     snprintf(text, sizeof text,
              "{" SQUARE
              ", \"particles\": {\"a\": {\"fill\": {\"file\": \"%s\", \"rename\": {\"junk\": "
-             "\"-\"}}, \"fields\": {\"u\": 4}}}" REST,
+             "\"-\"}}, \"fields\": {\"u\": 4}, \"columns\": {\"tracer\": 1, \"other\": 2}}}" REST,
              path);
     make(&m, text);
     assert_int_equal(m.p[0].n, 2);
     assert_true(particles_real(&m.p[0], "v", 0)[1] == 3);
     assert_true(particles_real(&m.p[0], "u", 0)[1] == 4);
+    assert_true(particles_real(&m.p[0], "tracer", 0)[1] == 8); /* restored */
+    assert_true(particles_real(&m.p[0], "other", 0)[1] == 2);
     assert_true(fabs(particles_real(&m.p[0], "h", 0)[1] - .13) < 1e-15); /* of m / rho */
     assert_true(m.given[0][particles_find(&m.p[0], "m")]);
     close_scene(&m);

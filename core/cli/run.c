@@ -125,7 +125,7 @@ static void interrupt(int signal_number)
     interrupted = 1;
 }
 
-/* "noh" of "examples/noh.json". */
+/* "tube" of "examples/tube.json". */
 static void default_out(const char *scene, char *out, size_t size)
 {
     const char *slash = strrchr(scene, '/');

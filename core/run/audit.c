@@ -22,18 +22,21 @@ static struct run *volatile audited;
 /* No bit pattern that arithmetic gives: a NaN with a payload of ours. */
 static const uint64_t mark = 0x7ff4a0d1700dbeefull;
 
-static const char *what_is_declared(const struct pass *p, size_t array, int column)
+/* What may be done with a column: 0 nothing, 1 read, 2 read and write. */
+static int declared(const struct pass *p, size_t array, int column)
 {
     if (pass_writes(p, array, column))
-        return "writes";
+        return 2;
     for (uint32_t k = 0; k < p->use.item->props.count; k++)
         if (p->dst.array == array && p->dst.column[k] == column)
-            return "reads";
-    return pass_reads_source(p, array, column) ? "reads" : "does not mention";
+            return 1;
+    return pass_reads_source(p, array, column) ? 1 : 0;
 }
 
 static void trap(int signal_number, siginfo_t *info, void *context)
 {
+    static const char *const word[] = {"does not declare", "declares that it only reads",
+                                       "declares that it writes"};
     (void)context;
     struct run *r = audited;
     char line[512] = "";
@@ -43,10 +46,9 @@ static void trap(int signal_number, siginfo_t *info, void *context)
         if (c < 0)
             continue;
         /* snprintf is not promised to be safe here; the process ends either way. */
-        snprintf(line, sizeof line,
-                 "sph: audit: %s touched \"%s\" of array \"%s\", which it declares that it %s\n",
+        snprintf(line, sizeof line, "sph: audit: %s touched \"%s\" of array \"%s\", which it %s\n",
                  r->audit->pass->name, p->column[c].name, p->name,
-                 what_is_declared(r->audit->pass, a, c));
+                 word[declared(r->audit->pass, a, c)]);
         ssize_t written = write(STDERR_FILENO, line, strlen(line));
         (void)written;
         _exit(EXIT_RUN);
@@ -109,12 +111,10 @@ void audit_begin(struct run *r, const struct pass *p)
         for (size_t s = 0; s < p->n_src; s++)
             source = source || p->src[s].array == a;
         for (size_t c = 0; c < pa->p.n_column; c++) {
+            int access = declared(p, a, (int)c);
             bool geometry = (int)c == pa->position || (int)c == pa->smoothing;
-            int access = pass_writes(p, a, (int)c) ? 2
-                         : what_is_declared(p, a, (int)c)[0] == 'r' ||
-                                 (geometry && p->shape == SPH_PAIR && (source || a == p->dst.array))
-                             ? 1
-                             : 0;
+            if (geometry && p->shape == SPH_PAIR && (source || a == p->dst.array) && !access)
+                access = 1;
             particles_guard(&r->plan->array[a].p, (int)c, access);
         }
     }

@@ -1,5 +1,5 @@
-/* scene/fill.c -- an array's fills, one after another: points, then columns. Reads the scene, writes the
- * particles it is given. */
+/* scene/fill.c -- an array's fills, one after another: points, then columns. Reads the scene,
+ * writes the particles it is given. */
 #include "scene/fill.h"
 #include "base/text.h"
 #include "scene/fill_private.h"

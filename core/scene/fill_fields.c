@@ -1,5 +1,5 @@
-/* scene/fill_fields.c -- the initial values of particles: fields, columns of the user's own, what a file
- * gave; and from them mass and smoothing length. */
+/* scene/fill_fields.c -- the initial values of particles: fields, columns of the user's own,
+ * what a file gave; and from them mass and smoothing length. */
 #include "base/text.h"
 #include "scene/expression.h"
 #include "scene/fill_private.h"
@@ -306,8 +306,7 @@ static int set_fields(struct particles *p, const struct scene *s, size_t a, size
         int c = particles_find(p, array->column[i].name);
         if (c < 0 || given[c]) /* by a field, or restored from a file */
             continue;
-        if (!fill_field(array, k, array->column[i].name) &&
-            set_column(p, s, c, array->column[i].name, array->column[i].node, first, n, e) < 0)
+        if (set_column(p, s, c, array->column[i].name, array->column[i].node, first, n, e) < 0)
             return -1;
         given[c] = true;
     }

@@ -1,5 +1,5 @@
-/* scene/fill_overlap.c -- particles of different origin that stand too near to one another: found with a
- * hash of cells as wide as the largest distance that matters. */
+/* scene/fill_overlap.c -- particles of different origin that stand too near to one another:
+ * found with a hash of cells as wide as the largest distance that matters. */
 #include "scene/fill_private.h"
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,5 @@
-/* scene/fill_private.h -- what the files fill*.c share: regions, lattices over them, points, fields. */
+/* scene/fill_private.h -- what the files fill*.c share: regions, lattices over them, points,
+ * fields. */
 #ifndef SCENE_FILL_PRIVATE_H
 #define SCENE_FILL_PRIVATE_H
 
@@ -46,7 +47,8 @@ int fill_spacing(const struct scene *s, size_t a, size_t k, const struct region 
 /* Fails if so many particles are more than the scene may make. */
 int fill_guard(const struct scene *s, const struct scene_fill *f, double n, struct error *e);
 
-/* The field of this name that holds in fill k of array a: the fill's, else the array's, else NULL. */
+/* The field of this name that holds in fill k of array a: the fill's, else the array's, else
+ * NULL. */
 const struct scene_field *fill_field(const struct scene_array *a, size_t k, const char *name);
 /* Values of component `part` of the field at `node` at n positions into out[0..n). `name` is for
  * messages. */
@@ -54,7 +56,8 @@ int field_values(const struct scene *s, const char *name, const cJSON *node, uin
                  const double *const x[3], const double *spacing, size_t n, double *out,
                  struct error *e);
 /* All initial fields of particles [first, first + n), which fill k has made. The h column holds
- * their spacing (NaN: unknown) and comes out as the smoothing length. t: what a file gave, or NULL. */
+ * their spacing (NaN: unknown) and comes out as the smoothing length. t: what a file gave, or
+ * NULL. */
 int fill_fields(struct particles *p, const struct scene *s, size_t a, size_t k, size_t first,
                 size_t n, const struct table *t, bool *given, struct error *e);
 

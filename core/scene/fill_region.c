@@ -1,5 +1,5 @@
-/* scene/fill_region.c -- regions and the lattices that fill them. Pure geometry: knows shapes and the
- * domain, no columns. */
+/* scene/fill_region.c -- regions and the lattices that fill them. Pure geometry: knows shapes
+ * and the domain, no columns. */
 #include "scene/expression.h"
 #include "scene/fill_private.h"
 #include <math.h>
@@ -67,8 +67,8 @@ int region_init(struct region *r, const struct scene *s, const struct scene_fill
 
 /* -- Lattices -------------------------------------------------------------------------------- */
 
-/* The points of a cell. Each set is centred, so that a lattice in a box keeps the same distance from
- * opposite faces. */
+/* The points of a cell. Each set is centred, so that a lattice in a box keeps the same distance
+ * from opposite faces. */
 static const double basis_square[1][3] = {{.5, .5, .5}};
 static const double basis_hexagonal[2][3] = {{.25, .25, .5}, {.75, .75, .5}};
 static const double basis_hcp[4][3] = {

@@ -1,8 +1,8 @@
-/* scene/glass.c -- a glass by relaxation. Random points in a box repel their neighbours by the potential
- * (1 - r / reach)^2, whose Fourier transform is positive in up to three dimensions: its least energy is
- * the most even density, and long waves of density decay like short ones (Gneiting 2002,
- * doi:10.1006/jmva.2001.2056; the idea of glasses by repulsion: White 1996, astro-ph/9410043).
- * Descent with momentum; a gather over cells, so that threads change no bit. */
+/* scene/glass.c -- a glass by relaxation. Random points in a box repel their neighbours by the
+ * potential (1 - r / reach)^2, whose Fourier transform is positive in up to three dimensions:
+ * its least energy is the most even density, and long waves of density decay like short ones
+ * (Gneiting 2002, doi:10.1006/jmva.2001.2056; the idea of glasses by repulsion: White 1996,
+ * astro-ph/9410043). Descent with momentum; a gather over cells, so that threads change no bit. */
 #include "scene/glass.h"
 #include "scene/random.h"
 #include <math.h>
@@ -282,9 +282,9 @@ static int relax(struct relax *s)
     }
 }
 
-/* Evenly spread, then shaken by up to a spacing: a start by chance alone has long waves of density,
- * which a short-ranged force evens out last. The sequence: multiples of the powers of 1 / phi, phi^(d + 1)
- * = phi + 1, modulo 1 (Roberts 2018, after Kronecker). */
+/* Evenly spread, then shaken by up to a spacing: a start by chance alone has long waves of
+ * density, which a short-ranged force evens out last. The sequence: multiples of the powers of 1
+ * / phi, phi^(d + 1) = phi + 1, modulo 1 (Roberts 2018, after Kronecker). */
 static void scatter(struct relax *s)
 {
     static const double phi[] = {1, 1.6180339887498949, 1.3247179572447461, 1.2207440846057595};

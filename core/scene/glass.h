@@ -1,5 +1,5 @@
-/* scene/glass.h -- a glass: points without order, but evenly spread, made by letting random ones push
- * each other apart. */
+/* scene/glass.h -- a glass: points without order, but evenly spread, made by letting random ones
+ * push each other apart. */
 #ifndef SCENE_GLASS_H
 #define SCENE_GLASS_H
 

@@ -1,5 +1,5 @@
-/* scene/json.h -- a JSON document that knows where its values stand in the text: cJSON for the tree,
- * a locator of our own for line and column, which cJSON does not keep. */
+/* scene/json.h -- a JSON document that knows where its values stand in the text: cJSON for the
+ * tree, a locator of our own for line and column, which cJSON does not keep. */
 #ifndef SCENE_JSON_H
 #define SCENE_JSON_H
 
@@ -27,10 +27,11 @@ struct document {
     cJSON *aliases; /* objects made by document_rest */
 };
 
-/* Reads and parses. Refuses, naming line and column: files that cannot be read, invalid UTF-8, syntax
- * errors, truncation, nesting deeper than DOCUMENT_DEPTH, duplicate keys, numbers that are not
- * finite, text after the end, over DOCUMENT_BYTES, a value that is not an object. Members whose key
- * begins with "//" are comments: they are left out of the tree. On failure nothing is to be freed. */
+/* Reads and parses. Refuses, naming line and column: files that cannot be read, invalid UTF-8,
+ * syntax errors, truncation, nesting deeper than DOCUMENT_DEPTH, duplicate keys, numbers that
+ * are not finite, text after the end, over DOCUMENT_BYTES, a value that is not an object.
+ * Members whose key begins with "//" are comments: they are left out of the tree. On failure
+ * nothing is to be freed. */
 int document_load(struct document *d, const char *path, struct error *e);
 /* As above from memory (copied); `path` is for messages. */
 int document_parse(struct document *d, const char *path, const char *text, size_t n,
@@ -41,8 +42,8 @@ void document_free(struct document *d);
  * the way are made; the index after the last appends to an array. */
 int document_set(struct document *d, const char *assignment, struct error *e);
 
-/* "scene.json:12:5: /particles/fluid/fill: " + message; EXIT_USAGE. If the node came from --set, that
- * is named instead of line and column. Returns -1. */
+/* "scene.json:12:5: /particles/fluid/fill: " + message; EXIT_USAGE. If the node came from --set,
+ * that is named instead of line and column. Returns -1. */
 int document_fail(const struct document *d, const cJSON *node, struct error *e, const char *format,
                   ...) __attribute__((format(printf, 4, 5)));
 /* As above, pointing at the node's key. */
@@ -59,8 +60,8 @@ void document_line(const struct document *d, size_t offset, size_t *line, size_t
 const cJSON *document_rest(struct document *d, const cJSON *object, const char *const *known,
                            size_t n);
 
-/* Typed access with errors that name the place. An object's member `key`; `*out` is untouched when the
- * key is absent and !required. Numbers must be finite. */
+/* Typed access with errors that name the place. An object's member `key`; `*out` is untouched
+ * when the key is absent and !required. Numbers must be finite. */
 int json_number(const struct document *d, const cJSON *object, const char *key, bool required,
                 double *out, struct error *e);
 /* A number > 0; `what` it is: "-0.1 is not a spacing; give a positive number". */

@@ -1,4 +1,5 @@
-/* scene/json_scan.h -- the grammar of JSON over a text: checks it, and says where each value stands. */
+/* scene/json_scan.h -- the grammar of JSON over a text: checks it, and says where each value
+ * stands. */
 #ifndef SCENE_JSON_SCAN_H
 #define SCENE_JSON_SCAN_H
 

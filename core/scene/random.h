@@ -1,5 +1,5 @@
-/* scene/random.h -- reproducible random numbers: xoshiro256** seeded by splitmix64 (Blackman and Vigna,
- * doi:10.1145/3460772). The same on every machine. */
+/* scene/random.h -- reproducible random numbers: xoshiro256** seeded by splitmix64 (Blackman and
+ * Vigna, doi:10.1145/3460772). The same on every machine. */
 #ifndef SCENE_RANDOM_H
 #define SCENE_RANDOM_H
 

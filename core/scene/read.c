@@ -1,5 +1,5 @@
-/* scene/read.c -- particles from a file as a table of named columns: CSV here, HDF5 in read_hdf5.c. Reads
- * the file, touches nothing else. */
+/* scene/read.c -- particles from a file as a table of named columns: CSV here, HDF5 in
+ * read_hdf5.c. Reads the file, touches nothing else. */
 #include "scene/read.h"
 #include "base/text.h"
 #include "scene/read_private.h"
@@ -74,7 +74,8 @@ static bool next_line(struct csv *c)
     return false;
 }
 
-/* Cuts the next cell off *rest: without blanks and quotation marks around it. NULL after the last. */
+/* Cuts the next cell off *rest: without blanks and quotation marks around it. NULL after the
+ * last. */
 static char *next_cell(char **rest)
 {
     char *cell = *rest;

@@ -17,10 +17,10 @@ struct table {
     bool snapshot; /* of our own: it may well have columns that the scene has no use for */
 };
 
-/* By the file's first bytes: HDF5 (a snapshot of ours; or datasets of equal length at its root, one
- * number or up to nine a row), else CSV (a line of names, then lines of numbers; lines that begin with
- * "#" are left out). `array`: of a snapshot, this array's particles only; NULL: all. Errors name
- * file, line and column; EXIT_USAGE. On failure nothing is to be freed. */
+/* By the file's first bytes: HDF5 (a snapshot of ours; or datasets of equal length at its root,
+ * one number or up to nine a row), else CSV (a line of names, then lines of numbers; lines that
+ * begin with "#" are left out). `array`: of a snapshot, this array's particles only; NULL: all.
+ * Errors name file, line and column; EXIT_USAGE. On failure nothing is to be freed. */
 int table_read(struct table *t, const char *path, const char *array, struct error *e);
 void table_free(struct table *t);
 /* Index of a column, or -1. */

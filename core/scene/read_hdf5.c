@@ -1,5 +1,5 @@
-/* scene/read_hdf5.c -- particles out of HDF5: a snapshot (by io/snapshot.h), or a file of plain datasets at
- * its root, as h5py's users write them: x, y, z or a two-dimensional x, rho, v, ... */
+/* scene/read_hdf5.c -- particles out of HDF5: a snapshot (by io/snapshot.h), or a file of plain
+ * datasets at its root, as h5py's users write them: x, y, z or a two-dimensional x, rho, v, ... */
 #include "base/text.h"
 #include "io/h5.h"
 #include "io/snapshot.h"
@@ -20,7 +20,8 @@ static char *component_name(const char *name, size_t part, size_t ncomp)
     return ncomp <= 3 ? text_format("%s.%c", name, "xyz"[part]) : text_format("%s.%zu", name, part);
 }
 
-/* Every component of interleaved values as a column; rows for which keep[i] is false are left out. */
+/* Every component of interleaved values as a column; rows for which keep[i] is false are left
+ * out. */
 static int add_components(struct table *t, const char *name, const double *value, size_t rows,
                           size_t ncomp, const bool *keep)
 {

@@ -1,7 +1,7 @@
-/* scene/scene.c -- a document as a scene: the parts at the top, and what all parts use. The particles
- * are in scene_particles.c and scene_fill.c, the recipe in scene_scheme.c, time and results in
- * scene_output.c. Touches the document and its own memory; loads nothing, resolves no name of a
- * plugin. */
+/* scene/scene.c -- a document as a scene: the parts at the top, and what all parts use. The
+ * particles are in scene_particles.c and scene_fill.c, the recipe in scene_scheme.c, time and
+ * results in scene_output.c. Touches the document and its own memory; loads nothing, resolves no
+ * name of a plugin. */
 #include "scene/scene.h"
 #include "base/text.h"
 #include "scene/expression.h"

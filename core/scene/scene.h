@@ -1,6 +1,6 @@
-/* scene/scene.h -- a scene file as checked structures. What a scene *names* (kernels, schemes, functions,
- * equations of state, exact solutions) is resolved by the plan, since plugins are loaded after this; each
- * such place keeps its JSON node, so that a message can point at it. */
+/* scene/scene.h -- a scene file as checked structures. What a scene *names* (kernels, schemes,
+ * functions, equations of state, exact solutions) is resolved by the plan, since plugins are
+ * loaded after this; each such place keeps its JSON node, so that a message can point at it. */
 #ifndef SCENE_SCENE_H
 #define SCENE_SCENE_H
 
@@ -9,7 +9,8 @@
 #include "scene/shape.h"
 #include <stdint.h>
 
-/* Particles that a scene may make; more needs "limits": guards against 10^9 by a slip of the pen. */
+/* Particles that a scene may make; more needs "limits": guards against 10^9 by a slip of the
+ * pen. */
 #define FILL_LIMIT 200000000ull
 
 struct scene_material {
@@ -65,7 +66,8 @@ struct scene_array {
     size_t material;         /* index, or SIZE_MAX: none */
     struct scene_fill *fill; /* one array may have several fills (left and right of a tube) */
     size_t n_fill;
-    /* Fields of a fill override those of the array. n_field of the array; fill_field[k] of fill k. */
+    /* Fields of a fill override those of the array. n_field of the array; fill_field[k] of fill
+     * k. */
     struct scene_field *field;
     size_t n_field;
     struct scene_field **fill_field;
@@ -179,8 +181,9 @@ struct scene {
 int scene_compile(struct scene *s, struct document *d, struct error *e);
 void scene_free(struct scene *s);
 
-/* The variables of regions ("where") and initial fields, in this order; a component that the scene's
- * dimension lacks is 0, r is the distance from the origin and never quite 0, so that x/r is 0 there. */
+/* The variables of regions ("where") and initial fields, in this order; a component that the
+ * scene's dimension lacks is 0, r is the distance from the origin and never quite 0, so that x/r
+ * is 0 there. */
 #define SCENE_VARIABLES 5
 extern const char *const scene_variables[SCENE_VARIABLES]; /* x, y, z, r, spacing */
 /* Regions know only the first four. */

@@ -1,4 +1,5 @@
-/* scene/scene_output.c -- "time", "compare", "probes" and "output": how long, and what is to be told. */
+/* scene/scene_output.c -- "time", "compare", "probes" and "output": how long, and what is to be
+ * told. */
 #include "base/text.h"
 #include "scene/scene_private.h"
 #include <math.h>

@@ -1,5 +1,5 @@
-/* scene/scene_private.h -- what the files scene*.c share: memory that lives as long as the scene, and one
- * function for each part of a scene. */
+/* scene/scene_private.h -- what the files scene*.c share: memory that lives as long as the
+ * scene, and one function for each part of a scene. */
 #ifndef SCENE_PRIVATE_H
 #define SCENE_PRIVATE_H
 

@@ -1,5 +1,5 @@
-/* scene/shape.h -- solid geometry: boxes, spheres, cylinders, half-spaces, and their union, intersection
- * and difference, as a tree with an inside test and bounds. */
+/* scene/shape.h -- solid geometry: boxes, spheres, cylinders, half-spaces, and their union,
+ * intersection and difference, as a tree with an inside test and bounds. */
 #ifndef SCENE_SHAPE_H
 #define SCENE_SHAPE_H
 
@@ -9,10 +9,10 @@
 
 struct shape;
 
-/* From {"box": {"min": [..], "max": [..]}}, {"sphere": {"center": [..], "radius": r}} (a disc in 2D, an
- * interval in 1D), {"cylinder": {"center": [..], "axis": [..], "radius": r, "length": l}} (3D),
- * {"half-space": {"point": [..], "normal": [..]}} (the normal points out of it), {"union": [..]},
- * {"intersection": [..]}, {"difference": [a, b, ...]}. */
+/* From {"box": {"min": [..], "max": [..]}}, {"sphere": {"center": [..], "radius": r}} (a disc in
+ * 2D, an interval in 1D), {"cylinder": {"center": [..], "axis": [..], "radius": r, "length": l}}
+ * (3D), {"half-space": {"point": [..], "normal": [..]}} (the normal points out of it), {"union":
+ * [..]}, {"intersection": [..]}, {"difference": [a, b, ...]}. */
 int shape_compile(struct shape **out, const struct document *d, const cJSON *node, int dim,
                   struct error *e);
 void shape_free(struct shape *s);

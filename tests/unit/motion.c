@@ -349,11 +349,11 @@ double motion_error(const struct run *r, bool both, size_t dst, const size_t *sr
                 add_images(r, both, &to, i, &from, j, &sum);
         }
         const double error = fabs(sum.s - s[i]);
-        worst = error <= worst ? worst : error; /* a NaN comes through */
+        worst = isnan(error) || error > worst ? error : worst; /* a NaN stays */
         scale = fmax(scale, fabs(sum.s));
         for (int c = 0; !both && c < r->plan->dim; c++) {
             const double vector = fabs(sum.sv[c] - particles_real(p, "sv", (uint32_t)c)[i]);
-            worst = vector <= worst ? worst : vector;
+            worst = isnan(vector) || vector > worst ? vector : worst;
         }
     }
     return worst / scale;

@@ -292,84 +292,78 @@ static void test_file(void **state)
 #define LINE "{\"dimensions\": 1, \"domain\": {\"min\": [0], \"max\": [1]}, \"particles\": "
 #define HALF(a, b) "{\"lattice\": \"square\", " BOX(a, b) ", \"spacing\": 0.1}"
 
+static const struct {
+    const char *text, *part;
+} wrong[] = {
+    {LINE "{\"a\": {\"fill\": [" HALF("0", "0.6") ", " HALF("0.5", "1") "], \"fields\": {\"rho\": "
+                                                                        "1}}}" REST,
+     "/particles/a/fill/1: this fill overlaps /particles/a/fill/0"},
+    {LINE
+     "{\"a\": {\"fill\": " HALF("0", "0.6") ", \"fields\": {\"rho\": 1}}, \"b\": {\"fill\": " HALF(
+         "0.5", "1") ", \"fields\": {\"rho\": 1}}}" REST,
+     "/particles/b: \"b\" overlaps \"a\""},
+    {LINE "{\"a\": {\"fill\": {\"lattice\": \"square\", \"count\": 1000000000}, \"fields\": "
+          "{\"rho\": 1}}}" REST,
+     "/particles/a/fill/count: this would make 1e+09 particles, some 279 GiB; the limit is 2e+08"},
+    {LINE
+     "{\"a\": {\"fill\": {\"lattice\": \"square\", \"spacing\": 1e-300}, \"fields\": {\"rho\": "
+     "1}}}" REST,
+     "this would make"},
+    {LINE "{\"a\": {\"fill\": {\"lattice\": \"square\", \"spacing\": 9}, \"fields\": {\"rho\": "
+          "1}}}" REST,
+     "too coarse"},
+    {LINE "{\"a\": {\"fill\": {\"lattice\": \"square\", \"count\": 9}}}" REST,
+     "the particles' mass is unknown"},
+    {LINE "{\"a\": {\"fill\": {\"lattice\": \"square\", \"count\": 9}, \"fields\": {\"rho\": 1, "
+          "\"uu\": 1}}}" REST,
+     "/particles/a/fields/uu: unknown field \"uu\" (did you mean \"u\"?)"},
+    {LINE "{\"a\": {\"fill\": {\"lattice\": \"square\", \"count\": 9}, \"fields\": {\"rho\": 1, "
+          "\"u\": \"sqrt(x - 0.5)\"}}}" REST,
+     "/particles/a/fields/u: \"sqrt(x - 0.5)\" gives u = NaN at x = 0.0555556"},
+    {LINE "{\"a\": {\"fill\": {\"lattice\": \"square\", \"count\": 9}, \"fields\": {\"rho\": "
+          "\"x - 0.5\"}}}" REST,
+     "the density is -0.444444"},
+    {LINE "{\"a\": {\"fill\": {\"lattice\": \"square\", \"count\": 9}, \"fields\": {\"rho\": 1, "
+          "\"h\": 0}}}" REST,
+     "a smoothing length is 0"},
+    {LINE "{\"a\": {\"fill\": {\"lattice\": \"square\", \"count\": 9}, \"fields\": {\"rho\": 1, "
+          "\"m\": -1}}}" REST,
+     "a particle's mass is -1"},
+    {LINE "{\"a\": {\"fill\": {\"lattice\": \"square\", \"count\": 9}, \"fields\": {\"rho\": 1, "
+          "\"u\": [1, 2]}}}" REST,
+     "2 components; \"u\" has 1 in 1 dimension"},
+    {LINE "{\"a\": {\"fill\": {\"lattice\": \"square\", \"mass\": 0.1}}}" REST,
+     "equal mass need the field \"rho\""},
+    {LINE "{\"a\": {\"fill\": {\"lattice\": \"square\", \"mass\": 0.1}, \"fields\": {\"rho\": "
+          "\"1 + x\"}}}" REST,
+     "\"rho\" varies within this fill"},
+    {LINE "{\"a\": {\"fill\": [" HALF("0", "0.5") ", {\"lattice\": \"square\", " BOX(
+         "0.5",
+         "1") ", \"spacing\": 0.1, \"fields\": {\"u\": 1}}], \"fields\": {\"rho\": 1}}}" REST,
+     "\"u\" is given by this fill of this array, and not by an earlier one"},
+    {LINE "{\"a\": {\"fill\": {\"lattice\": \"square\", \"count\": 9, \"in\": {\"intersection\": [{"
+          "\"box\": {\"min\": [0], \"max\": [0.2]}}, {\"box\": {\"min\": [0.5], \"max\": "
+          "[0.9]}}]}}, \"fields\": {\"rho\": 1}}}" REST,
+     "there are no particles inside this shape"},
+    {"{\"dimensions\": 1, \"domain\": {\"min\": [0], \"max\": [1], \"sides\": {\"x\": \"mirror\"}}, "
+     "\"particles\": {\"a\": {\"fill\": " HALF("0", "1.5") ", \"fields\": {\"rho\": 1}}}" REST,
+     "x = 1.05 lies outside the domain, beyond its mirror side"},
+    {LINE "{\"a\": {\"fill\": {\"file\": \"/nowhere.csv\"}}}" REST,
+     "/particles/a/fill/file: /nowhere.csv: cannot be read"},
+};
+
 static void test_refused(void **state)
 {
-    static const struct {
-        const char *text, *part;
-    } cases[] = {
-        {LINE
-         "{\"a\": {\"fill\": [" HALF("0", "0.6") ", " HALF("0.5", "1") "], \"fields\": {\"rho\": "
-                                                                       "1}}}" REST,
-         "/particles/a/fill/1: this fill overlaps /particles/a/fill/0"},
-        {LINE
-         "{\"a\": {\"fill\": " HALF("0", "0.6") ", \"fields\": {\"rho\": 1}}, \"b\": {\"fill\": " HALF(
-             "0.5", "1") ", \"fields\": {\"rho\": 1}}}" REST,
-         "/particles/b: \"b\" overlaps \"a\""},
-        {LINE "{\"a\": {\"fill\": {\"lattice\": \"square\", \"count\": 1000000000}, \"fields\": "
-              "{\"rho\": 1}}}" REST,
-         "/particles/a/fill/count: this would make 1e+09 particles, some 279 GiB; the limit is 2e+08"},
-        {LINE
-         "{\"a\": {\"fill\": {\"lattice\": \"square\", \"spacing\": 1e-300}, \"fields\": {\"rho\": "
-         "1}}}" REST,
-         "this would make"},
-        {LINE "{\"a\": {\"fill\": {\"lattice\": \"square\", \"spacing\": 9}, \"fields\": {\"rho\": "
-              "1}}}" REST,
-         "too coarse"},
-        {LINE "{\"a\": {\"fill\": {\"lattice\": \"square\", \"count\": 9}}}" REST,
-         "the particles' mass is unknown"},
-        {LINE
-         "{\"a\": {\"fill\": {\"lattice\": \"square\", \"count\": 9}, \"fields\": {\"rho\": 1, "
-         "\"uu\": 1}}}" REST,
-         "/particles/a/fields/uu: unknown field \"uu\" (did you mean \"u\"?)"},
-        {LINE
-         "{\"a\": {\"fill\": {\"lattice\": \"square\", \"count\": 9}, \"fields\": {\"rho\": 1, "
-         "\"u\": \"sqrt(x - 0.5)\"}}}" REST,
-         "/particles/a/fields/u: \"sqrt(x - 0.5)\" gives u = NaN at x = 0.0555556"},
-        {LINE "{\"a\": {\"fill\": {\"lattice\": \"square\", \"count\": 9}, \"fields\": {\"rho\": "
-              "\"x - 0.5\"}}}" REST,
-         "the density is -0.444444"},
-        {LINE
-         "{\"a\": {\"fill\": {\"lattice\": \"square\", \"count\": 9}, \"fields\": {\"rho\": 1, "
-         "\"h\": 0}}}" REST,
-         "a smoothing length is 0"},
-        {LINE
-         "{\"a\": {\"fill\": {\"lattice\": \"square\", \"count\": 9}, \"fields\": {\"rho\": 1, "
-         "\"m\": -1}}}" REST,
-         "a particle's mass is -1"},
-        {LINE
-         "{\"a\": {\"fill\": {\"lattice\": \"square\", \"count\": 9}, \"fields\": {\"rho\": 1, "
-         "\"u\": [1, 2]}}}" REST,
-         "2 components; \"u\" has 1 in 1 dimension"},
-        {LINE "{\"a\": {\"fill\": {\"lattice\": \"square\", \"mass\": 0.1}}}" REST,
-         "equal mass need the field \"rho\""},
-        {LINE "{\"a\": {\"fill\": {\"lattice\": \"square\", \"mass\": 0.1}, \"fields\": {\"rho\": "
-              "\"1 + x\"}}}" REST,
-         "\"rho\" varies within this fill"},
-        {LINE "{\"a\": {\"fill\": [" HALF("0", "0.5") ", {\"lattice\": \"square\", " BOX(
-             "0.5",
-             "1") ", \"spacing\": 0.1, \"fields\": {\"u\": 1}}], \"fields\": {\"rho\": 1}}}" REST,
-         "\"u\" is given by this fill of this array, and not by an earlier one"},
-        {LINE
-         "{\"a\": {\"fill\": {\"lattice\": \"square\", \"count\": 9, \"in\": {\"intersection\": [{"
-         "\"box\": {\"min\": [0], \"max\": [0.2]}}, {\"box\": {\"min\": [0.5], \"max\": "
-         "[0.9]}}]}}, \"fields\": {\"rho\": 1}}}" REST,
-         "there are no particles inside this shape"},
-        {"{\"dimensions\": 1, \"domain\": {\"min\": [0], \"max\": [1], \"sides\": {\"x\": \"mirror\"}}, "
-         "\"particles\": {\"a\": {\"fill\": " HALF("0", "1.5") ", \"fields\": {\"rho\": 1}}}" REST,
-         "x = 1.05 lies outside the domain, beyond its mirror side"},
-        {LINE "{\"a\": {\"fill\": {\"file\": \"/nowhere.csv\"}}}" REST,
-         "/particles/a/fill/file: /nowhere.csv: cannot be read"},
-    };
     (void)state;
-    for (size_t i = 0; i < COUNT(cases); i++) {
+    for (size_t i = 0; i < COUNT(wrong); i++) {
         struct made m;
         struct error e;
-        open_scene(&m, cases[i].text);
+        open_scene(&m, wrong[i].text);
         if (fill_all(&m, &e) == 0)
-            fail_msg("taken: %s", cases[i].text);
+            fail_msg("taken: %s", wrong[i].text);
         assert_int_equal(e.exit_code, EXIT_USAGE);
-        if (!strstr(e.text, cases[i].part))
-            fail_msg("\"%s\" does not hold \"%s\"", e.text, cases[i].part);
+        if (!strstr(e.text, wrong[i].part))
+            fail_msg("\"%s\" does not hold \"%s\"", e.text, wrong[i].part);
         close_scene(&m);
     }
 }

@@ -1,4 +1,5 @@
-/* tests/unit/test_json.c -- documents: what is refused and where, --set, typed access, references. */
+/* tests/unit/test_json.c -- documents: what is refused and where, --set, typed access,
+ * references. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -32,65 +33,66 @@ static void assert_holds(const char *text, const char *part)
         fail_msg("\"%s\" does not hold \"%s\"", text, part);
 }
 
+static const struct {
+    const char *text, *start, *part;
+} wrong[] = {
+    {"", "s.json:1:1: ", "empty"},
+    {" \n ", "s.json:2:2: ", "empty"},
+    {"[1]", "s.json:1:1: ", "object"},
+    {"{\"a\": 1,}", "s.json:1:9: ", "comma"},
+    {"{\"a\": [1,]}", "s.json:1:10: ", "missing before \"]\""},
+    {"{\"a\" 1}", "s.json:1:6: ", "\":\" is missing"},
+    {"{\"a\": 1 \"b\": 2}", "s.json:1:9: ", "\",\" or \"}\""},
+    {"{\"a\": [1 2]}", "s.json:1:10: ", "\",\" or \"]\""},
+    {"{a: 1}", "s.json:1:2: ", "double quotes"},
+    {"{'a': 1}", "s.json:1:2: ", "double quotes"},
+    {"{\"a\": 'b'}", "s.json:1:7: ", "double quotes"},
+    {"{\n  \"a\": {\n", "s.json:3:1: ", "object that begins in line 2, column 8"},
+    {"{\"a\": [1, 2", "s.json:1:12: ", "array that begins in line 1, column 7"},
+    {"{\"a\": \"b", "s.json:1:9: ", "string that begins in line 1, column 7"},
+    {"{\"a\": \"b\n\"}", "s.json:1:7: ", "not closed in its line"},
+    {"{\"a\":", "s.json:1:6: ", "object that begins"},
+    {"{\"a\"", "s.json:1:5: ", "object that begins"},
+    {"{\"a\": NaN}", "s.json:1:7: ", "NaN is not a number"},
+    {"{\"a\": -Infinity}", "s.json:1:8: ", "Infinity is not a number"},
+    {"{\"a\": 1e999}", "s.json:1:7: ", "too large"},
+    {"{\"a\": 01}", "s.json:1:7: ", "0 and another digit"},
+    {"{\"a\": 1.}", "s.json:1:7: ", "decimal point"},
+    {"{\"a\": .5}", "s.json:1:7: ", "unexpected \".\""},
+    {"{\"a\": +5}", "s.json:1:7: ", "unexpected \"+\""},
+    {"{\"a\": 1e}", "s.json:1:7: ", "exponent"},
+    {"{\"a\": -}", "s.json:1:7: ", "begins with a digit"},
+    {"{\"a\": True}", "s.json:1:7: ", "did you mean \"true\"?"},
+    {"{\"a\": gsph}", "s.json:1:7: ", "double quotes"},
+    {"{\"a\": 1} x", "s.json:1:10: ", "behind the end"},
+    {"{\"a\": 1 // b\n}", "s.json:1:9: ", "is missing here"},
+    {"{// b\n}", "s.json:1:2: ", "no comments"},
+    {"{\"a\": \"\\q\"}", "s.json:1:8: ", "unknown escape"},
+    {"{\"a\": \"\\u12\"}", "s.json:1:8: ", "four hexadecimal digits"},
+    {"{\"a\": \"\\u0000\"}", "s.json:1:8: ", "\\u0000"},
+    {"{\"a\": \"\\ud800\"}", "s.json:1:8: ", "surrogate"},
+    {"{\"a\": \"\\udc00\"}", "s.json:1:8: ", "surrogate"},
+    {"{\"a\": \"\001\"}", "s.json:1:8: ", "control character 0x01"},
+    {"{\"\xc3\xa9\": \xff}", "s.json:1:7: ", "0xff is not UTF-8"},
+    {"{\"a\": 1,\n \"b\": {\"c\": 1, \"d\": 2, \"c\": 3}}",
+     "s.json:2:24: /b/c: ", "already, in line 2, column 8"},
+    {"{\"a\": 1, \"\\u0061\": 2}", "s.json:1:10: /a: ", "already"},
+    {"{\"a\": "
+     "1000000000000000000000000000000000000000000000000000000000000000000000000000000000000}",
+     "s.json:1:7: ", "at most 63"},
+};
+
 static void test_syntax(void **state)
 {
-    static const struct {
-        const char *text, *start, *part;
-    } cases[] = {
-        {"", "s.json:1:1: ", "empty"},
-        {" \n ", "s.json:2:2: ", "empty"},
-        {"[1]", "s.json:1:1: ", "object"},
-        {"{\"a\": 1,}", "s.json:1:9: ", "comma"},
-        {"{\"a\": [1,]}", "s.json:1:10: ", "missing before \"]\""},
-        {"{\"a\" 1}", "s.json:1:6: ", "\":\" is missing"},
-        {"{\"a\": 1 \"b\": 2}", "s.json:1:9: ", "\",\" or \"}\""},
-        {"{\"a\": [1 2]}", "s.json:1:10: ", "\",\" or \"]\""},
-        {"{a: 1}", "s.json:1:2: ", "double quotes"},
-        {"{'a': 1}", "s.json:1:2: ", "double quotes"},
-        {"{\"a\": 'b'}", "s.json:1:7: ", "double quotes"},
-        {"{\n  \"a\": {\n", "s.json:3:1: ", "object that begins in line 2, column 8"},
-        {"{\"a\": [1, 2", "s.json:1:12: ", "array that begins in line 1, column 7"},
-        {"{\"a\": \"b", "s.json:1:9: ", "string that begins in line 1, column 7"},
-        {"{\"a\": \"b\n\"}", "s.json:1:7: ", "not closed in its line"},
-        {"{\"a\":", "s.json:1:6: ", "object that begins"},
-        {"{\"a\"", "s.json:1:5: ", "object that begins"},
-        {"{\"a\": NaN}", "s.json:1:7: ", "NaN is not a number"},
-        {"{\"a\": -Infinity}", "s.json:1:8: ", "Infinity is not a number"},
-        {"{\"a\": 1e999}", "s.json:1:7: ", "too large"},
-        {"{\"a\": 01}", "s.json:1:7: ", "0 and another digit"},
-        {"{\"a\": 1.}", "s.json:1:7: ", "decimal point"},
-        {"{\"a\": .5}", "s.json:1:7: ", "unexpected \".\""},
-        {"{\"a\": +5}", "s.json:1:7: ", "unexpected \"+\""},
-        {"{\"a\": 1e}", "s.json:1:7: ", "exponent"},
-        {"{\"a\": -}", "s.json:1:7: ", "begins with a digit"},
-        {"{\"a\": True}", "s.json:1:7: ", "did you mean \"true\"?"},
-        {"{\"a\": gsph}", "s.json:1:7: ", "double quotes"},
-        {"{\"a\": 1} x", "s.json:1:10: ", "behind the end"},
-        {"{\"a\": 1 // b\n}", "s.json:1:9: ", "is missing here"},
-        {"{// b\n}", "s.json:1:2: ", "no comments"},
-        {"{\"a\": \"\\q\"}", "s.json:1:8: ", "unknown escape"},
-        {"{\"a\": \"\\u12\"}", "s.json:1:8: ", "four hexadecimal digits"},
-        {"{\"a\": \"\\u0000\"}", "s.json:1:8: ", "\\u0000"},
-        {"{\"a\": \"\\ud800\"}", "s.json:1:8: ", "surrogate"},
-        {"{\"a\": \"\\udc00\"}", "s.json:1:8: ", "surrogate"},
-        {"{\"a\": \"\001\"}", "s.json:1:8: ", "control character 0x01"},
-        {"{\"\xc3\xa9\": \xff}", "s.json:1:7: ", "0xff is not UTF-8"},
-        {"{\"a\": 1,\n \"b\": {\"c\": 1, \"d\": 2, \"c\": 3}}",
-         "s.json:2:24: /b/c: ", "already, in line 2, column 8"},
-        {"{\"a\": 1, \"\\u0061\": 2}", "s.json:1:10: /a: ", "already"},
-        {"{\"a\": "
-         "1000000000000000000000000000000000000000000000000000000000000000000000000000000000000}",
-         "s.json:1:7: ", "at most 63"},
-    };
     (void)state;
-    for (size_t i = 0; i < COUNT(cases); i++) {
+    for (size_t i = 0; i < COUNT(wrong); i++) {
         struct document d;
         struct error e;
-        if (parse(&d, cases[i].text, &e) == 0)
-            fail_msg("taken: %s", cases[i].text);
+        if (parse(&d, wrong[i].text, &e) == 0)
+            fail_msg("taken: %s", wrong[i].text);
         assert_int_equal(e.exit_code, EXIT_USAGE);
-        assert_starts(e.text, cases[i].start);
-        assert_holds(e.text, cases[i].part);
+        assert_starts(e.text, wrong[i].start);
+        assert_holds(e.text, wrong[i].part);
         assert_null(strchr(e.text, '\n'));
     }
 }
@@ -291,7 +293,8 @@ static void test_files(void **state)
     unlink(path);
 }
 
-/* Every document cut anywhere, and with any byte changed, is taken or refused, and nothing is lost. */
+/* Every document cut anywhere, and with any byte changed, is taken or refused, and nothing is
+ * lost. */
 static void test_damage(void **state)
 {
     static const char text[] =

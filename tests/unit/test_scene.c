@@ -162,90 +162,91 @@ static void test_recipe(void **state)
 }
 
 /* The whole scene with one --set: what it says. */
+static const struct {
+    const char *set, *part;
+} wrong[] = {
+    {"titel=T", "/titel: unknown key \"titel\" (did you mean \"title\"?)"},
+    {"dimensions=4", "4 is too large"},
+    {"dimensions=2.5", "not a whole number"},
+    {"dimensions=3", "2 numbers in 3 dimensions"},
+    {"units=si", "known are: none, SI, cgs"},
+    {"plugins=[1]", "/plugins/0: 1 is not a name"},
+    {"domain.min=[1, 0]", "the domain is empty: along x"},
+    {"domain.sides.x=perodic", "did you mean \"periodic\"?"},
+    {"domain.sides.y=[\"periodic\", \"open\"]", "is periodic and its opposite is not"},
+    {"domain.sides.y=[\"open\"]", "1 sides; give two"},
+    {"domain.sides.z=open", "unknown key \"z\""},
+    {"materials.gas.eso=1", "unknown key \"eso\""},
+    {"materials.gas.eos=7", "7 is not an equation of state"},
+    {"materials.g$s={}", "is not a name"},
+    {"particles={}", "the scene is empty"},
+    {"particles.fluid={}", "the key \"fill\" is missing"},
+    {"particles.fluid.material=gs", "unknown material \"gs\" (did you mean \"gas\"?)"},
+    {"particles.fluid.fill=[]", "no fill"},
+    {"particles.fluid.fill={\"spacing\": 1}", "one of \"lattice\", \"glass\" and \"file\""},
+    {"particles.fluid.fill.0.spacing=-0.1", "-0.1 is not a spacing; give a positive number"},
+    {"particles.fluid.fill.0.spacing=0", "0 is not a spacing"},
+    {"particles.fluid.fill.0.spacing=nan", "\"nan\" is not a number"},
+    {"particles.fluid.fill.0.count=5", "given twice"},
+    {"particles.fluid.fill.0.lattice=sqare", "did you mean \"square\"?"},
+    {"particles.fluid.fill.0.lattice=fcc", "needs 3 dimensions"},
+    {"particles.fluid.fill.0.jitter=2", "2 is not a jitter"},
+    {"particles.fluid.fill.1.jitter=0.1", "unknown key \"jitter\""},
+    {"particles.fluid.fill.1.glass.sweeps=0", "0 is too small"},
+    {"particles.fluid.fields.u=1 +", "ends too early"},
+    {"particles.fluid.fields.u=q", "unknown name \"q\""},
+    {"particles.fluid.fields.u=true", "neither a number nor an expression"},
+    {"particles.fluid.fields.v=[1, 2, 3]", "3 components of a vector in 2 dimensions"},
+    {"particles.fluid.fields.x=[1, 2]", "given by \"fill\""},
+    {"particles.fluid.columns.label.type=int", "unknown type \"int\""},
+    {"particles.fluid.columns.drift=[0]", "1 component; give 2"},
+    {"particles.fluid.columns.m=1", "has the column \"m\" already"},
+    {"particles.fluid.h_over_dx=0", "0 is not a ratio"},
+    {"boundaries={}", "array of boundary conditions"},
+    {"boundaries.0={}", "the key \"name\" is missing"},
+    {"scheme=7", "7 is not a scheme"},
+    {"scheme.name=7", "7 is not text"},
+    {"scheme.edit={}", "array of edits"},
+    {"scheme.edit.0={\"insert\": \"a\", \"delete\": \"b\"}", "an edit has one of"},
+    {"scheme.edit.0.with=w", "\"with\" does not go with \"insert\""},
+    {"scheme.edit.3.operation=sum", "unknown operation \"sum\""},
+    {"scheme.edit.3.to=fluids", "unknown array \"fluids\" (did you mean \"fluid\"?)"},
+    {"scheme.edit.3.at=end", "unknown moment \"end\""},
+    {"scheme.edit.4.of=1", "1 is not text"},
+    {"kernel.nam=k", "unknown key \"nam\""},
+    {"limits.particles=0", "0 is too small"},
+    {"time.end=0.5", "the end 0.5 is not after the begin 1"},
+    {"time.cfl=0", "0 is not a time-step number"},
+    {"time.steps=-1", "-1 is too small"},
+    {"neighbours.skin=-1", "-1 is not a skin"},
+    {"compare.0.array=fluit", "unknown array \"fluit\""},
+    {"compare.0.where=r <", "ends too early"},
+    {"compare.0.where=spacing > 1", "unknown name \"spacing\""},
+    {"probes.0.min=rho", "a probe has one of"},
+    {"probes.1.crossing.shell=0", "0 is not a width"},
+    {"probes.1.name=a", "an earlier probe has this name"},
+    {"output.every=0", "0 is not a time interval"},
+    {"output.log.every=1", "not both"},
+    {"output.checkpoint.steps=10", "checkpoints are not available in this version"},
+    {"output.picture.map=blue", "unknown colour map \"blue\""},
+    {"output.picture.min=20", "min 20 is not below max 17"},
+    {"time=null", "null is not an object"},
+};
+
 static void test_refused(void **state)
 {
-    static const struct {
-        const char *set, *part;
-    } cases[] = {
-        {"titel=T", "/titel: unknown key \"titel\" (did you mean \"title\"?)"},
-        {"dimensions=4", "4 is too large"},
-        {"dimensions=2.5", "not a whole number"},
-        {"dimensions=3", "2 numbers in 3 dimensions"},
-        {"units=si", "known are: none, SI, cgs"},
-        {"plugins=[1]", "/plugins/0: 1 is not a name"},
-        {"domain.min=[1, 0]", "the domain is empty: along x"},
-        {"domain.sides.x=perodic", "did you mean \"periodic\"?"},
-        {"domain.sides.y=[\"periodic\", \"open\"]", "is periodic and its opposite is not"},
-        {"domain.sides.y=[\"open\"]", "1 sides; give two"},
-        {"domain.sides.z=open", "unknown key \"z\""},
-        {"materials.gas.eso=1", "unknown key \"eso\""},
-        {"materials.gas.eos=7", "7 is not an equation of state"},
-        {"materials.g$s={}", "is not a name"},
-        {"particles={}", "the scene is empty"},
-        {"particles.fluid={}", "the key \"fill\" is missing"},
-        {"particles.fluid.material=gs", "unknown material \"gs\" (did you mean \"gas\"?)"},
-        {"particles.fluid.fill=[]", "no fill"},
-        {"particles.fluid.fill={\"spacing\": 1}", "one of \"lattice\", \"glass\" and \"file\""},
-        {"particles.fluid.fill.0.spacing=-0.1", "-0.1 is not a spacing; give a positive number"},
-        {"particles.fluid.fill.0.spacing=0", "0 is not a spacing"},
-        {"particles.fluid.fill.0.spacing=nan", "\"nan\" is not a number"},
-        {"particles.fluid.fill.0.count=5", "given twice"},
-        {"particles.fluid.fill.0.lattice=sqare", "did you mean \"square\"?"},
-        {"particles.fluid.fill.0.lattice=fcc", "needs 3 dimensions"},
-        {"particles.fluid.fill.0.jitter=2", "2 is not a jitter"},
-        {"particles.fluid.fill.1.jitter=0.1", "unknown key \"jitter\""},
-        {"particles.fluid.fill.1.glass.sweeps=0", "0 is too small"},
-        {"particles.fluid.fields.u=1 +", "ends too early"},
-        {"particles.fluid.fields.u=q", "unknown name \"q\""},
-        {"particles.fluid.fields.u=true", "neither a number nor an expression"},
-        {"particles.fluid.fields.v=[1, 2, 3]", "3 components of a vector in 2 dimensions"},
-        {"particles.fluid.fields.x=[1, 2]", "given by \"fill\""},
-        {"particles.fluid.columns.label.type=int", "unknown type \"int\""},
-        {"particles.fluid.columns.drift=[0]", "1 component; give 2"},
-        {"particles.fluid.columns.m=1", "has the column \"m\" already"},
-        {"particles.fluid.h_over_dx=0", "0 is not a ratio"},
-        {"boundaries={}", "array of boundary conditions"},
-        {"boundaries.0={}", "the key \"name\" is missing"},
-        {"scheme=7", "7 is not a scheme"},
-        {"scheme.name=7", "7 is not text"},
-        {"scheme.edit={}", "array of edits"},
-        {"scheme.edit.0={\"insert\": \"a\", \"delete\": \"b\"}", "an edit has one of"},
-        {"scheme.edit.0.with=w", "\"with\" does not go with \"insert\""},
-        {"scheme.edit.3.operation=sum", "unknown operation \"sum\""},
-        {"scheme.edit.3.to=fluids", "unknown array \"fluids\" (did you mean \"fluid\"?)"},
-        {"scheme.edit.3.at=end", "unknown moment \"end\""},
-        {"scheme.edit.4.of=1", "1 is not text"},
-        {"kernel.nam=k", "unknown key \"nam\""},
-        {"limits.particles=0", "0 is too small"},
-        {"time.end=0.5", "the end 0.5 is not after the begin 1"},
-        {"time.cfl=0", "0 is not a time-step number"},
-        {"time.steps=-1", "-1 is too small"},
-        {"neighbours.skin=-1", "-1 is not a skin"},
-        {"compare.0.array=fluit", "unknown array \"fluit\""},
-        {"compare.0.where=r <", "ends too early"},
-        {"compare.0.where=spacing > 1", "unknown name \"spacing\""},
-        {"probes.0.min=rho", "a probe has one of"},
-        {"probes.1.crossing.shell=0", "0 is not a width"},
-        {"probes.1.name=a", "an earlier probe has this name"},
-        {"output.every=0", "0 is not a time interval"},
-        {"output.log.every=1", "not both"},
-        {"output.checkpoint.steps=10", "checkpoints are not available in this version"},
-        {"output.picture.map=blue", "unknown colour map \"blue\""},
-        {"output.picture.min=20", "min 20 is not below max 17"},
-        {"time=null", "null is not an object"},
-    };
     (void)state;
-    for (size_t i = 0; i < COUNT(cases); i++) {
+    for (size_t i = 0; i < COUNT(wrong); i++) {
         struct document d;
         struct scene s;
         struct error e = {0};
         assert_int_equal(document_parse(&d, "s.json", whole, sizeof whole - 1, &e), 0);
-        assert_int_equal(document_set(&d, cases[i].set, &e), 0);
+        assert_int_equal(document_set(&d, wrong[i].set, &e), 0);
         if (scene_compile(&s, &d, &e) == 0)
-            fail_msg("taken: %s", cases[i].set);
+            fail_msg("taken: %s", wrong[i].set);
         assert_int_equal(e.exit_code, EXIT_USAGE);
-        if (!strstr(e.text, cases[i].part))
-            fail_msg("\"%s\" does not hold \"%s\"", e.text, cases[i].part);
+        if (!strstr(e.text, wrong[i].part))
+            fail_msg("\"%s\" does not hold \"%s\"", e.text, wrong[i].part);
         if (strncmp(e.text, "--set ", 6) != 0 && strncmp(e.text, "s.json:", 7) != 0)
             fail_msg("\"%s\" does not name its place", e.text);
         document_free(&d);

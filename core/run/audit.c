@@ -35,8 +35,8 @@ static int declared(const struct pass *p, size_t array, int column)
 
 static void trap(int signal_number, siginfo_t *info, void *context)
 {
-    static const char *const word[] = {"does not declare", "declares that it only reads",
-                                       "declares that it writes"};
+    static const char *const word[] = {"does not declare", "declares only to read",
+                                       "declares to write"};
     (void)context;
     struct run *r = audited;
     char line[512] = "";

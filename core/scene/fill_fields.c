@@ -211,9 +211,9 @@ static int find_spacing(struct particles *p, const struct scene *s, size_t a, si
         else if (g.h)
             spacing[i] /= array->h_factor;
         if (!(spacing[i] > 0) || !isfinite(spacing[i]))
-            return document_fail(
-                s->doc, array->fill[k].node, e,
-                "the particles' spacing is unknown: give \"spacing\", or m and rho, or h, in the file");
+            return document_fail(s->doc, array->fill[k].node, e,
+                                 "the particles' spacing is unknown: give \"spacing\", or "
+                                 "m and rho, or h, in the file");
     }
     return 0;
 }
@@ -275,10 +275,11 @@ static int set_from_table(struct particles *p, const struct scene *s, const stru
         size_t n = 0;
         for (size_t i = 0; i < p->n_column && n < 256; i++)
             known[n++] = p->column[i].name;
-        return document_fail(
-            s->doc, json_get(f->node, "file"), e,
-            "the file's column \"%.60s\" is no property%s; \"rename\": {\"%.60s\": \"-\"} leaves it out",
-            t->column[k].name, text_suggest(hint, sizeof hint, name, known, n), t->column[k].name);
+        return document_fail(s->doc, json_get(f->node, "file"), e,
+                             "the file's column \"%.60s\" is no property%s; "
+                             "\"rename\": {\"%.60s\": \"-\"} leaves it out",
+                             t->column[k].name, text_suggest(hint, sizeof hint, name, known, n),
+                             t->column[k].name);
     }
     return 0;
 }

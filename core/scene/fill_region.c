@@ -199,10 +199,10 @@ static int constant_density(const struct scene *s, size_t a, size_t k, const str
             return document_fail(s->doc, field->node, e, "the density is %.6g; give a positive one",
                                  value[i]);
         if (fabs(value[i] - *rho) > 1e-9 * *rho)
-            return document_fail(
-                s->doc, size_node(f), e,
-                "\"rho\" varies within this fill (%.6g, %.6g); equal masses need one fill a density",
-                *rho, value[i]);
+            return document_fail(s->doc, size_node(f), e,
+                                 "\"rho\" varies within this fill (%.6g, %.6g); "
+                                 "equal masses need one fill a density",
+                                 *rho, value[i]);
     }
     return 0;
 }

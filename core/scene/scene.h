@@ -109,11 +109,11 @@ struct scene_probe {
     const cJSON *node;
     const char *name, *array;
     enum probe_kind kind;
-    const char *of;    /* a property; component by "v.x" */
-    const char *where; /* expression, or NULL */
-    double shell,
-        level; /* crossing: where the mean of shells (in r) of this width crosses the level, from outside */
-    double expected; /* NaN: none */
+    const char *of;      /* a property; component by "v.x" */
+    const char *where;   /* expression, or NULL */
+    double shell, level; /* crossing: where the mean of shells (in r) of this width crosses the
+                          * level, from outside */
+    double expected;     /* NaN: none */
 };
 
 struct scene_memory; /* what the structures stand in: private to scene.c */

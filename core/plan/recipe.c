@@ -83,19 +83,24 @@ static void step_delete(struct plan *plan, size_t index)
     plan->n_step--;
 }
 
+static int recipe_step(struct plan *plan, const sph_step *declared, const cJSON *node,
+                       struct error *e)
+{
+    struct step *s = step_insert(plan, plan->n_step, e);
+    if (!s)
+        return -1;
+    bool eos = strcmp(declared->kind, SPH_KIND_EOS) == 0;
+    s->kind = eos ? KIND_EOS : KIND_FUNCTION;
+    s->moment = (enum moment)moment_find(declared->at);
+    s->node = node;
+    return plan_name(&s->name, e, "%s", eos ? "eos" : declared->name);
+}
+
 static int recipe_from_scheme(struct plan *plan, struct error *e)
 {
-    for (uint32_t i = 0; i < plan->scheme->steps.count; i++) {
-        const sph_step *declared = list_at(&plan->scheme->steps, i);
-        struct step *s = step_insert(plan, plan->n_step, e);
-        if (!s)
+    for (uint32_t i = 0; i < plan->scheme->steps.count; i++)
+        if (recipe_step(plan, list_at(&plan->scheme->steps, i), NULL, e))
             return -1;
-        bool eos = strcmp(declared->kind, SPH_KIND_EOS) == 0;
-        s->kind = eos ? KIND_EOS : KIND_FUNCTION;
-        s->moment = (enum moment)moment_find(declared->at);
-        if (plan_name(&s->name, e, "%s", eos ? "eos" : declared->name))
-            return -1;
-    }
     return 0;
 }
 
@@ -161,10 +166,35 @@ static int recipe_edit(struct plan *plan, const struct scene_edit *edit, struct 
     return plan_name(&s->name, e, "%s", edit->function ? edit->function : edit->of);
 }
 
+/* A boundary condition brings steps of its own; they come after the scheme's. */
+static int recipe_boundary(struct plan *plan, const cJSON *node, struct error *e)
+{
+    const struct document *d = plan->scene->doc;
+    const cJSON *name = cJSON_GetObjectItemCaseSensitive(node, "name");
+    if (!cJSON_IsString(name))
+        return document_fail(d, node, e, "a boundary condition needs a \"name\"");
+    const struct entry *entry = registry_find(plan->registry, KIND_BOUNDARY, name->valuestring);
+    if (!entry)
+        return plan_unknown(plan, node, KIND_BOUNDARY, name->valuestring, e);
+    if (cJSON_GetArraySize(node) > 1)
+        return document_fail(d, node, e, "boundary conditions take no parameters in this version");
+    const sph_boundary *boundary = entry_boundary(entry);
+    for (uint32_t i = 0; i < boundary->steps.count; i++)
+        if (recipe_step(plan, list_at(&boundary->steps, i), node, e))
+            return -1;
+    return 0;
+}
+
 int recipe_make(struct plan *plan, struct error *e)
 {
     if (plan->scheme && recipe_from_scheme(plan, e))
         return -1;
+    const cJSON *boundary;
+    cJSON_ArrayForEach(boundary, plan->scene->boundaries)
+    {
+        if (recipe_boundary(plan, boundary, e))
+            return -1;
+    }
     for (size_t i = 0; i < plan->scene->scheme.n_edit; i++)
         if (recipe_edit(plan, &plan->scene->scheme.edit[i], e))
             return -1;

@@ -154,7 +154,7 @@ for number in (signal.SIGINT, signal.SIGTERM):
     last = Snapshot(os.path.join(out, names[-1]))
     expect(
         f"snapshot of {number!r}",
-        last.time == summary["time"] and last.step == summary["steps"],
+        abs(last.time / summary["time"] - 1) < 1e-14 and last.step == summary["steps"],
         (last.time, summary["time"], last.step, summary["steps"]),
     )
     expect(f"values of {number!r}", numpy.isfinite(last["rho"]).all())
@@ -189,8 +189,8 @@ if result.code == 1:
 # -- mpirun ---------------------------------------------------------------------------------------
 
 mpirun = shlex.split(os.environ.get("MPIRUN") or "")
-done = scenes.command("info", "--build")
-if mpirun and mpirun != ["no"]:
+build = scenes.command("info", "--build").stdout
+if mpirun and any(line.startswith("MPI ") and "not built in" not in line for line in build.splitlines()):
     result = scenes.run(noh, "--steps", "2", before=(*mpirun, "-n", "1"))
     expect("one rank", result.code == 0 and result.summary()["steps"] == 2, result.stderr)
     alone = scenes.good(noh, "--steps", "2")

@@ -108,7 +108,7 @@ class Scenes:
         self.count += 1
         out = os.path.join(self.scratch.name, f"out{self.count}")
         path = os.path.join(EXAMPLES, scene) if isinstance(scene, str) else self.write(scene)
-        words = [path, "--out", out, *(["--quiet"] if quiet else []), *options]
+        words = [path, "--out", out, "--threads", "1", *(["--quiet"] if quiet else []), *options]
         return Result(self.command(*words, before=before), out)
 
     def good(self, scene, *options, **others):

@@ -5,7 +5,7 @@ set -eu
 cd "$top_srcdir"
 status=0
 for file in $(find core sdk plugins tests examples -name '*.[ch]' -o -name '*.sh' -o -name '*.py' \
-    -o -name '*.json' | sort); do
+    -o -name '*.json' -o -name '*.csv' -o -name 'README*' | sort); do
     name=$file
     case $file in tests/*.c) name=${file%.c} ;; esac
     cat Makefile.am ./*/fragment.am | grep -qwF -e "$name" || { echo "in no fragment: $file"; status=1; }

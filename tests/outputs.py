@@ -21,7 +21,7 @@ for scene in (noh, sod):
 
 # -- A run to the end -----------------------------------------------------------------------------
 
-result = scenes.good(changed(sod, time={"end": 0.03}, output={"every": 0.01, "log": {"steps": 10}}), quiet=False)
+result = scenes.good(changed(sod, time={"end": 0.03}, output={"every": 0.01, "log": {"steps": 7}}), quiet=False)
 summary = result.summary()
 expect("a table", "energy drift" in result.stdout and len(result.stdout.splitlines()) > 5, result.stdout)
 expect("no progress in a pipe", result.stderr == "", result.stderr)
@@ -68,7 +68,7 @@ expect(
 )
 column = {name: [row[k] for row in rows] for k, name in enumerate(names)}
 steps = summary["steps"]
-expect("rows of the log", column["step"] == [*range(0, steps, 10), steps] or steps % 10 == 0, column["step"])
+expect("rows of the log", column["step"] == [*range(0, steps, 7), steps], column["step"])
 expect("end of the log", column["time"][-1] == 0.03 and column["step"][-1] == steps)
 expect("numbers of the log", all(math.isfinite(value) for row in rows for value in row))
 last = result.last()
@@ -191,12 +191,14 @@ if result.code == 1:
 mpirun = shlex.split(os.environ.get("MPIRUN") or "")
 build = scenes.command("info", "--build").stdout
 if mpirun and any(line.startswith("MPI ") and "not built in" not in line for line in build.splitlines()):
+    # Open MPI's own memory, which it never gives back, is not ours to answer for.
+    os.environ["ASAN_OPTIONS"] = "detect_leaks=0"
     result = scenes.run(noh, "--steps", "2", before=(*mpirun, "-n", "1"))
     expect("one rank", result.code == 0 and result.summary()["steps"] == 2, result.stderr)
     alone = scenes.good(noh, "--steps", "2")
     expect("one rank is no rank", (alone.last()["rho"] == result.last()["rho"]).all())
     result = scenes.run(noh, "--steps", "2", before=(*mpirun, "-n", "2"))
-    expect("two ranks", result.code == 2 and result.stderr.count("this version runs on one rank") == 2,
+    expect("two ranks", result.code == 2 and result.stderr.count("this version runs on one rank") == 1,
            (result.code, result.stderr))
     expect("two ranks leave nothing", not os.path.exists(result.out))
 scenes.end()

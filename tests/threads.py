@@ -16,7 +16,7 @@ def columns(result):
 
 
 for name, options in (
-    ("noh.json", ("--set", "particles.fluid.fill.spacing=0.04", "--steps", "60")),
+    ("noh.json", ("--set", "particles.fluid.fill.spacing=0.04", "--steps", "40")),
     ("sod.json", ("--steps", "300")),
     (
         "noh.json",

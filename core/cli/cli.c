@@ -6,6 +6,8 @@
 int cli_error(const struct error *e)
 {
     fflush(stdout);
-    fprintf(stderr, "sph: %s\n", e->text);
+    /* Of many ranks with the same error one has the words. */
+    if (e->text[0])
+        fprintf(stderr, "sph: %s\n", e->text);
     return e->exit_code;
 }

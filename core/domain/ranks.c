@@ -21,10 +21,12 @@ int ranks_begin(int *argc, char ***argv, struct error *e)
         return error_set(e, EXIT_RUN, "MPI does not start");
     MPI_Comm_size(MPI_COMM_WORLD, &size);
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    if (size > 1)
-        return error_set(e, EXIT_USAGE,
-                         "rank %d: this version runs on one rank, not on %d; use --threads", rank,
-                         size);
+    if (size > 1) {
+        error_set(e, EXIT_USAGE, "this version runs on one rank, not on %d; use --threads", size);
+        if (rank > 0)
+            e->text[0] = '\0'; /* the first one says it */
+        return -1;
+    }
     return 0;
 }
 

@@ -77,7 +77,9 @@ static sph_status overrun(const sph_batch *b)
 {
     for (uint64_t i = b->first; i < b->first + b->count; i++)
         plane(&b->dst[0])[i] = 1;
-    plane(&b->dst[0])[b->n_dst + (1u << 20)] = 1;
+    /* On and on: past the column's end stands a page that nobody may touch. */
+    for (uint64_t i = b->n_dst; i < b->n_dst + (1u << 20); i++)
+        plane(&b->dst[0])[i] = 1;
     return SPH_OK;
 }
 

@@ -265,7 +265,8 @@ static const sph_scheme coast = {
 const struct rig_items motion_items = {
     {&spring, &bound, &measure, &count_up, &breathe, &shade, &gather, &wide, &widen, NULL},
     {NULL},
-    {&swing, &coast, NULL}};
+    {&swing, &coast, NULL},
+    {NULL}};
 
 /* -- The same by hand ---------------------------------------------------------------------------- */
 

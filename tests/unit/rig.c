@@ -25,6 +25,8 @@ static sph_status init(const sph_host *host)
         status = host->register_item(host, SPH_KIND_EOS, current->eos[i]);
     for (size_t i = 0; status == SPH_OK && current->scheme[i]; i++)
         status = host->register_item(host, SPH_KIND_SCHEME, current->scheme[i]);
+    for (size_t i = 0; status == SPH_OK && current->boundary[i]; i++)
+        status = host->register_item(host, SPH_KIND_BOUNDARY, current->boundary[i]);
     return status;
 }
 

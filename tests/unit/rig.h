@@ -13,6 +13,7 @@ struct rig_items {
     const sph_function *function[RIG_MOST];
     const sph_eos *eos[RIG_MOST];
     const sph_scheme *scheme[RIG_MOST];
+    const sph_boundary *boundary[RIG_MOST];
 };
 
 struct rig {

@@ -157,8 +157,18 @@ static const sph_scheme flat_flow = {
     SIZE(sph_scheme),     0,          &flat_scheme_item, "thing", "kdk", 0.25,
     SPH_LIST(flow_steps), SPH_NO_LIST};
 
-static const struct rig_items items = {
-    {&sum, &push, &other, &mark, &clip, &flat, NULL}, {&gas, NULL}, {&flow, &flat_flow, NULL}};
+static const sph_step shore_steps[] = {
+    {SPH_AT_EVALUATE, SPH_KIND_FUNCTION, "clip"},
+    {SPH_AT_START, SPH_KIND_FUNCTION, "mark"},
+};
+static const sph_item shore_item = {SIZE(sph_item), SPH_ALL_DIMS, "shore", "a mock", "",
+                                    SPH_NO_LIST,    SPH_NO_LIST};
+static const sph_boundary shore = {SIZE(sph_boundary), 0, &shore_item, SPH_LIST(shore_steps)};
+
+static const struct rig_items items = {{&sum, &push, &other, &mark, &clip, &flat, NULL},
+                                       {&gas, NULL},
+                                       {&flow, &flat_flow, NULL},
+                                       {&shore, NULL}};
 
 /* -- Scenes -------------------------------------------------------------------------------------- */
 
@@ -429,6 +439,24 @@ static void test_unknown(void **state)
                          "{'delete':'clip'}")));
 }
 
+#define BOUNDED(boundary)                                                                          \
+    HEAD "'particles':{" FLUID "},'scheme':'flow','time':{'end':1},'boundaries':[" boundary "]}"
+
+/* A boundary condition's steps come behind the scheme's of the same moment. */
+static void test_boundaries(void **state)
+{
+    struct rig r;
+    (void)state;
+    rig_open(&r, &items, BOUNDED("{'name':'shore'}"));
+    assert_string_equal(passes(&r), "s:mark(fluid) s:mark(fluid) e:sum(fluid) e:eos(fluid) "
+                                    "e:push(fluid) e:clip(fluid) f:clip(fluid)");
+    rig_close(&r);
+    rig_refused(&items, "no boundary condition \"shor\" is registered (did you mean \"shore\"?)",
+                BOUNDED("{'name':'shor'}"));
+    rig_refused(&items, "/boundaries/0", BOUNDED("{'name':'shore','on':'fluid'}"));
+    rig_refused(&items, "/boundaries/0", BOUNDED("{}"));
+}
+
 static void test_reports(void **state)
 {
     (void)state;
@@ -465,6 +493,11 @@ static void test_pairs(void **state)
     for (size_t k = 0; k < 4; k++)
         assert_int_equal(r.plan.pair[k], SPH_SYMMETRIC);
     assert_true(r.plan.reach_scale == 1.5);
+    rig_close(&r);
+    /* The larger reach stays, whichever function comes last. */
+    rig_open(&r, &items, TWO(EDIT("{'insert':'sum'}")));
+    for (size_t k = 0; k < 4; k++)
+        assert_int_equal(r.plan.pair[k], SPH_SYMMETRIC);
     rig_close(&r);
     /* Fluid from all, wall from the fluid: wall and wall never meet. */
     rig_open(&r, &items,
@@ -582,6 +615,7 @@ int main(void)
         cmocka_unit_test(test_operations),
         cmocka_unit_test(test_assignment),
         cmocka_unit_test(test_unknown),
+        cmocka_unit_test(test_boundaries),
         cmocka_unit_test(test_reports),
         cmocka_unit_test(test_pairs),
         cmocka_unit_test(test_parameters),

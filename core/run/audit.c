@@ -36,7 +36,7 @@ static int declared(const struct pass *p, size_t array, int column)
 static void trap(int signal_number, siginfo_t *info, void *context)
 {
     static const char *const word[] = {"does not declare", "declares only to read",
-                                       "declares to write"};
+                                       "may write, but not beyond its end"};
     (void)context;
     struct run *r = audited;
     char line[512] = "";

@@ -57,6 +57,7 @@ expect("pass_s", set(summary["cost"]["pass_s"]) == {one["name"] for one in summa
 for key in ("pairs", "ns_per_pair", "us_per_particle_update", "loop_s", "bytes_per_particle"):
     expect(f"cost of {key}", summary["cost"][key] > 0, summary["cost"][key])
 expect("updates", summary["cost"]["particle_updates"] == 450 * summary["steps"])
+expect("sweeps that iterate", summary["cost"]["h_sweeps"] > summary["steps"], summary["cost"]["h_sweeps"])
 expect("mass_drift", summary["conservation"]["mass_drift"] == 0)
 
 names, rows = result.log()

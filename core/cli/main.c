@@ -7,6 +7,7 @@
 #include <sph/abi.h>
 #include <stdbool.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
@@ -139,8 +140,20 @@ static int dispatch(int argc, char **argv)
     return run_command(0, argc, argc, argv);
 }
 
+/* Threads that wait for others should sleep, not spin: beside any other work on the machine spinning
+ * costs several times the run. The OpenMP library reads its policy once, before main, so the program
+ * starts itself again with it set, unless the user has set it. */
+static void sleep_when_waiting(char **argv)
+{
+    if (getenv("OMP_WAIT_POLICY") || getenv("GOMP_SPINCOUNT"))
+        return;
+    if (setenv("OMP_WAIT_POLICY", "passive", 1) == 0)
+        execv("/proc/self/exe", argv); /* where that fails the run is slower, no more */
+}
+
 int main(int argc, char **argv)
 {
+    sleep_when_waiting(argv);
     int status = dispatch(argc, argv);
 
     /* A full disk must not pass for a success. */

@@ -401,6 +401,8 @@ static int summarise(struct loop *l, const char *status, const char *reason, str
     s.cost.particle_updates = r->cost.particle_updates;
     s.cost.pairs = r->cost.pairs;
     s.cost.list_builds = r->cost.list_builds;
+    for (size_t i = 0; i < r->plan->n_pass; i++)
+        s.cost.h_sweeps += r->plan->pass[i].max_sweeps ? r->plan->pass[i].sweeps : 0;
     s.cost.peak_rss = (uint64_t)usage.ru_maxrss * 1024u;
     s.cost.bytes_per_particle = bytes_per_particle(l);
     int result = summary_write(&s, l->out, e);

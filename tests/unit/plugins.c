@@ -29,8 +29,8 @@ const struct entry *plugins_find(const struct registry *r, enum kind kind, const
     return x;
 }
 
-void use_init(struct use *u, struct registry *r, const sph_item *item, const sph_life *life,
-              const sph_list *props, int dim, const char *const *names, const double *values)
+void trial_init(struct trial *u, struct registry *r, const sph_item *item, const sph_life *life,
+                const sph_list *props, int dim, const char *const *names, const double *values)
 {
     struct error e = {0};
 
@@ -59,19 +59,19 @@ void use_init(struct use *u, struct registry *r, const sph_item *item, const sph
                            .host = &r->host};
 }
 
-void use_fini(struct use *u)
+void trial_fini(struct trial *u)
 {
     if (u->life && u->life->destroy)
         u->life->destroy(&u->registry->host, u->state);
     config_fini(&u->config);
 }
 
-void use_column(struct use *u, uint32_t k, double *data, uint64_t n)
+void use_column(struct trial *u, uint32_t k, double *data, uint64_t n)
 {
     u->column[k] = (sph_column){.data = data, .plane = n};
 }
 
-sph_status use_run(struct use *u, sph_range_fn run, double time, uint64_t n)
+sph_status use_run(struct trial *u, sph_range_fn run, double time, uint64_t n)
 {
     u->batch.first = 0;
     u->batch.count = n;

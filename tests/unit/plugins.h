@@ -9,7 +9,7 @@
 #define PLUGINS_PARAMS 16
 
 /* One use of an item, on columns that the test owns. */
-struct use {
+struct trial {
     struct registry *registry;
     const sph_item *item;
     const sph_life *life;
@@ -24,12 +24,12 @@ void plugins_load(struct registry *r, const char *name);
 const struct entry *plugins_find(const struct registry *r, enum kind kind, const char *name);
 
 /* `values`: pairs of a parameter's name and its value, ended by NULL. */
-void use_init(struct use *u, struct registry *r, const sph_item *item, const sph_life *life,
-              const sph_list *props, int dim, const char *const *names, const double *values);
-void use_fini(struct use *u);
+void trial_init(struct trial *u, struct registry *r, const sph_item *item, const sph_life *life,
+                const sph_list *props, int dim, const char *const *names, const double *values);
+void trial_fini(struct trial *u);
 /* Columns in declared order: n particles, component c at data + c * n. NULL: not present. */
-void use_column(struct use *u, uint32_t k, double *data, uint64_t n);
-sph_status use_run(struct use *u, sph_range_fn run, double time, uint64_t n);
+void use_column(struct trial *u, uint32_t k, double *data, uint64_t n);
+sph_status use_run(struct trial *u, sph_range_fn run, double time, uint64_t n);
 
 /* A table of tests/reference. Numbers only, row by row; *columns a row. The caller frees it. */
 double *plugins_table(const char *file, int *columns, int *rows);

@@ -32,22 +32,22 @@ static void run_gas(double gamma, double *rho, double *u, double *p, double *cs)
 {
     const sph_eos *eos = entry_eos(plugins_find(&registry, KIND_EOS, "ideal-gas"));
     const char *const names[] = {"gamma", NULL};
-    struct use use;
+    struct trial use;
 
-    use_init(&use, &registry, eos->item, eos->life, &eos->item->props, 2, names, &gamma);
+    trial_init(&use, &registry, eos->item, eos->life, &eos->item->props, 2, names, &gamma);
     use_column(&use, 0, rho, N);
     use_column(&use, 1, u, N);
     use_column(&use, 2, p, N);
     use_column(&use, 3, cs, N);
     assert_int_equal(use_run(&use, eos->run, 0, N), SPH_OK);
-    use_fini(&use);
+    trial_fini(&use);
 }
 
 static void inverse_undoes_the_run(void **state)
 {
     const sph_eos *eos = entry_eos(plugins_find(&registry, KIND_EOS, "ideal-gas"));
     double rho[N], u[N], p[N], cs[N], back[N];
-    struct use use;
+    struct trial use;
 
     (void)state;
     for (int i = 0; i < N; i++) {
@@ -55,12 +55,12 @@ static void inverse_undoes_the_run(void **state)
         u[i] = pow(10, 3 - i / 7.);
     }
     run_gas(5. / 3, rho, u, p, cs);
-    use_init(&use, &registry, eos->item, eos->life, &eos->inverse_props, 2, NULL, NULL);
+    trial_init(&use, &registry, eos->item, eos->life, &eos->inverse_props, 2, NULL, NULL);
     use_column(&use, 0, rho, N);
     use_column(&use, 1, p, N);
     use_column(&use, 2, back, N);
     assert_int_equal(use_run(&use, eos->inverse, 0, N), SPH_OK);
-    use_fini(&use);
+    trial_fini(&use);
     for (int i = 0; i < N; i++) {
         assert_true(fabs(p[i] / (2. / 3 * rho[i] * u[i]) - 1) < 1e-15);
         assert_true(fabs(back[i] / u[i] - 1) < 4e-16);
@@ -103,16 +103,16 @@ static void cold_and_undershot_gas_is_silent(void **state)
 static void single_precision_is_declined(void **state)
 {
     const sph_eos *eos = entry_eos(plugins_find(&registry, KIND_EOS, "ideal-gas"));
-    struct use use;
+    struct trial use;
     char why[256];
 
     (void)state;
-    use_init(&use, &registry, eos->item, eos->life, &eos->item->props, 2, NULL, NULL);
+    trial_init(&use, &registry, eos->item, eos->life, &eos->item->props, 2, NULL, NULL);
     use.batch.real = SPH_F32;
     assert_int_equal(use_run(&use, eos->run, 0, 0), SPH_E_UNKNOWN);
     registry_reason(&registry, SPH_E_UNKNOWN, why, sizeof(why));
     assert_non_null(strstr(why, "single precision"));
-    use_fini(&use);
+    trial_fini(&use);
 }
 
 static void gamma_is_checked(void **state)

@@ -61,16 +61,17 @@ static void solve(const char *name, const char *const *names, const double *valu
                   struct fields *f)
 {
     const sph_exact *exact = entry_exact(plugins_find(&registry, KIND_EXACT, name));
-    struct use use;
+    struct trial use;
 
-    use_init(&use, &registry, exact->item, exact->life, &exact->item->props, f->dim, names, values);
+    trial_init(&use, &registry, exact->item, exact->life, &exact->item->props, f->dim, names,
+               values);
     use_column(&use, 0, f->x, f->n);
     use_column(&use, 1, f->rho, f->n);
     use_column(&use, 2, f->p, f->n);
     use_column(&use, 3, f->v, f->n);
     use_column(&use, 4, f->u, f->n);
     assert_int_equal(use_run(&use, exact->run, time, f->n), SPH_OK);
-    use_fini(&use);
+    trial_fini(&use);
 }
 
 static void riemann(const struct problem *p, double time, struct fields *f)

@@ -5,6 +5,7 @@
 #include "cli/cli.h"
 
 #include <sph/abi.h>
+#include <signal.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -153,6 +154,7 @@ static void sleep_when_waiting(char **argv)
 
 int main(int argc, char **argv)
 {
+    signal(SIGXFSZ, SIG_IGN); /* a size limit comes back as an error of write, whoever writes */
     sleep_when_waiting(argv);
     int status = dispatch(argc, argv);
 

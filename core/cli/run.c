@@ -158,7 +158,6 @@ static int run(const struct arguments *a, struct loaded *l, struct error *e)
         return -1;
     signal(SIGINT, interrupt);
     signal(SIGTERM, interrupt);
-    signal(SIGXFSZ, SIG_IGN); /* a full disk or a size limit comes back as an error of write */
     int status = loop_run(&l->plan, &out, &o, e);
     output_close(&out);
     return status;

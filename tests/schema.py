@@ -57,7 +57,8 @@ whole = {
                 {"file": "a.csv", "rename": {"X": "x"}, "spacing": 0.1}],
             "fields": {"rho": 1, "v": ["-x/r", 0]},
             "columns": {"label": {"type": "int32", "value": "x > 0"}, "tracer": 1, "drift": [0, 1]}}},
-    "boundaries": [{"name": "b", "on": "wall"}],
+    "boundaries": [{"name": "b", "array": "fluid", "with": ["fluid"], "on": "wall",
+                    "path": {"t": [0, 1], "x": [0, 2]}}],
     "scheme": {"name": "s", "alpha": 1, "edit": [
         {"insert": "f", "before": "g", "alpha": 2}, {"delete": "d"}, {"replace": "r", "with": "w"},
         {"operation": "summation", "function": "f", "of": "rho", "to": ["fluid"], "at": "finish"},
@@ -138,6 +139,7 @@ expected = {
     "scene.c:compile_domain:keys": definition("domain"),
     "scene.c:compile_material:keys": definition("material"),
     "scene.c:compile_material:eos_keys": definition("named"),
+    "scene.c:compile_boundaries:keys": keys("properties", "boundaries", "items"),
     "scene.c:compile_limits:keys": keys("properties", "limits"),
     "scene.c:compile_kernel:keys": keys("properties", "kernel", "anyOf", 1),
     "scene.c:compile_neighbours:keys": keys("properties", "neighbours"),

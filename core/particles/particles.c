@@ -361,6 +361,40 @@ int particles_permute(struct particles *p, const uint32_t *order, struct error *
     return 0;
 }
 
+int particles_gather(struct particles *p, const uint32_t *index, size_t n, struct error *e)
+{
+    const size_t old = p->n;
+    char *scratch;
+
+    for (size_t i = 0; i < n; i++) {
+        if (index[i] >= old) {
+            return error_set(e, EXIT_RUN, "%s: new particle %zu is made of particle %u of %zu",
+                             p->name, i, index[i], old);
+        }
+    }
+    if (particles_resize(p, old > n ? old : n, 0, e) != 0) {
+        return -1;
+    }
+    scratch = malloc(old * 8 + 8);
+    if (!scratch) {
+        return error_memory(e, "gathering particles", old * 8);
+    }
+    for (size_t k = 0; k < p->n_column; k++) {
+        struct column *c = &p->column[k];
+
+        for (uint32_t q = 0; q < c->ncomp; q++) {
+            char *x = (char *)c->data + q * c->plane * c->size;
+
+            memcpy(scratch, x, old * c->size);
+            for (size_t i = 0; i < n; i++) {
+                memcpy(x + i * c->size, scratch + index[i] * c->size, c->size);
+            }
+        }
+    }
+    free(scratch);
+    return particles_resize(p, n, 0, e);
+}
+
 /* -- Views ------------------------------------------------------------------------------------- */
 
 sph_column particles_column(const struct particles *p, int column)

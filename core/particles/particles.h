@@ -59,6 +59,9 @@ double *particles_real(const struct particles *p, const char *name, uint32_t c);
 int particles_resize(struct particles *p, size_t n, size_t n_ghost, struct error *e);
 /* new[i] = old[order[i]] for all real particles, in every `state` column (others become stale). */
 int particles_permute(struct particles *p, const uint32_t *order, struct error *e);
+/* new[i] = old[index[i]] for i < n, in every column; an index may come again, or not at all. Ghosts
+ * are lost. */
+int particles_gather(struct particles *p, const uint32_t *index, size_t n, struct error *e);
 /* The column as the ABI hands it over. */
 sph_column particles_column(const struct particles *p, int column);
 /* Bytes of a particle over all columns. */

@@ -58,12 +58,18 @@ int bind_columns(struct plan *plan, struct binding *b, size_t array, const sph_i
     return 0;
 }
 
-/* The parameters of a use: the scheme's members that it declares, then the step's own. */
+/* The parameters of a use: the scheme's members that it declares, then its boundary condition's, then
+ * the step's own. */
 static int configure(struct plan *plan, struct use *use, const struct step *s, struct error *e)
 {
     const struct document *d = plan->scene->doc;
     const cJSON *member;
     cJSON_ArrayForEach(member, plan->scene->scheme.params)
+    {
+        if (use_declares(use, member->string) && use_set(use, d, member, e))
+            return -1;
+    }
+    cJSON_ArrayForEach(member, s->shared)
     {
         if (use_declares(use, member->string) && use_set(use, d, member, e))
             return -1;

@@ -100,14 +100,14 @@ static int complete(struct plan *plan, struct plan_array *a, struct error *e)
 
 int plan_fill(struct plan *plan, struct error *e)
 {
-    int64_t next_id = 0;
     struct particles *all = calloc(plan->n_array ? plan->n_array : 1, sizeof *all);
     if (!all)
         return error_memory(e, "arrays", plan->n_array * sizeof *all);
     int status = 0;
     uint64_t total = 0;
     for (size_t a = 0; !status && a < plan->n_array; a++) {
-        status = fill_array(&plan->array[a].p, plan->scene, a, &next_id, plan->array[a].given, e);
+        status =
+            fill_array(&plan->array[a].p, plan->scene, a, &plan->next_id, plan->array[a].given, e);
         total += plan->array[a].p.n;
         all[a] = plan->array[a].p;
     }

@@ -97,6 +97,45 @@ static int check_scheme_members(const struct plan *plan, struct error *e)
     return 0;
 }
 
+/* A boundary condition's member that none of its steps declares, likewise. */
+static int check_boundary_members(const struct plan *plan, const struct scene_boundary *b,
+                                  struct error *e)
+{
+    const cJSON *member;
+    cJSON_ArrayForEach(member, b->params)
+    {
+        const char *name[256];
+        size_t n = 0;
+        bool known = false;
+        for (size_t i = 0; i < plan->n_step; i++) {
+            const struct entry *x =
+                plan->step[i].node == b->node && plan->step[i].kind == KIND_FUNCTION
+                    ? registry_find(plan->registry, KIND_FUNCTION, plan->step[i].name)
+                    : NULL;
+            for (uint32_t k = 0; x && k < x->item->params.count && n < 256; k++) {
+                name[n] = ((const sph_param *)list_at(&x->item->params, k))->name;
+                known = known || strcmp(name[n], member->string) == 0;
+                n++;
+            }
+        }
+        char near[512];
+        if (!known)
+            return document_fail(plan->scene->doc, member, e,
+                                 "the boundary condition \"%s\" has no parameter \"%s\"%s", b->name,
+                                 member->string,
+                                 text_suggest(near, sizeof near, member->string, name, n));
+    }
+    return 0;
+}
+
+static int check_boundaries(const struct plan *plan, struct error *e)
+{
+    for (size_t i = 0; i < plan->scene->n_boundary; i++)
+        if (check_boundary_members(plan, &plan->scene->boundary[i], e))
+            return -1;
+    return 0;
+}
+
 static int bind_exact(struct plan *plan, struct error *e)
 {
     const struct scene *s = plan->scene;
@@ -136,8 +175,8 @@ int plan_make(struct plan *plan, struct registry *r, const struct scene *s, bool
     *plan = (struct plan){.registry = r, .scene = s, .dim = s->dim};
     if (find_scheme(plan, e) || find_kernel(plan, e) || find_integrator(plan, e) ||
         recipe_make(plan, e) || columns_begin(plan, guarded, e) || bind_passes(plan, e) ||
-        check_scheme_members(plan, e) || columns_finish(plan, e) || bind_exact(plan, e) ||
-        check_reports(plan, e))
+        check_scheme_members(plan, e) || check_boundaries(plan, e) || columns_finish(plan, e) ||
+        bind_exact(plan, e) || check_reports(plan, e))
         return -1;
     return 0;
 }
@@ -203,6 +242,7 @@ void plan_free(struct plan *plan)
     free(plan->exact);
     bind_free(plan);
     recipe_free(plan);
+    kernel_form_fini(&plan->kernel);
     for (size_t a = 0; a < plan->n_array; a++) {
         struct plan_array *pa = &plan->array[a];
         if (pa->eos.item)

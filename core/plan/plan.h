@@ -19,6 +19,7 @@ struct use {
     const sph_item *item;
     const sph_life *life; /* or NULL */
     struct sph_config config;
+    struct use_table *tables; /* what config.table points into */
     void *state;
 };
 
@@ -26,11 +27,13 @@ struct use {
 struct step {
     char *name;
     enum moment moment;
-    enum kind kind;             /* KIND_FUNCTION or KIND_EOS (the material's own) */
-    const cJSON *node;          /* the edit that put it there, or NULL */
-    const cJSON *params;        /* its own parameters, or NULL */
-    const char **to, **from;    /* not owned */
-    size_t n_to, n_from;        /* 0: all */
+    enum kind kind;          /* KIND_FUNCTION or KIND_EOS (the material's own) */
+    const cJSON *node;       /* the edit that put it there, or NULL */
+    const cJSON *params;     /* its own parameters, or NULL */
+    const cJSON *shared;     /* parameters that it takes if it declares them, or NULL: those of its
+                                 * boundary condition; the scheme's reach it in any case */
+    const char **to, **from; /* not owned */
+    size_t n_to, n_from;     /* 0: all */
     const char *operation, *of; /* what the scene says it is; checked; or NULL */
     const char *expression;     /* assigned to `of`; NULL: a function */
 };
@@ -111,6 +114,7 @@ struct plan {
     uint32_t *pair;     /* [dst * n_array + src]: 0 no function asks, SPH_GATHER, SPH_SYMMETRIC */
     double reach_scale; /* largest over the functions */
     struct use *exact;  /* of scene.compare, one each */
+    int64_t next_id;    /* of a particle yet to be made */
 };
 
 /* Resolves every name, checks every parameter, adds every column. guarded: for the audit. Particles are
@@ -138,6 +142,9 @@ void use_fini(struct use *u, struct registry *r);
 int use_set(struct use *u, const struct document *d, const cJSON *member, struct error *e);
 /* All members of an object (NULL: none); one that the item does not declare is an error. */
 int use_set_all(struct use *u, const struct document *d, const cJSON *members, struct error *e);
+/* The same of a parameter that is a table; in tables.c. */
+int use_set_table(struct use *u, const struct document *d, const cJSON *member, struct error *e);
+void use_tables_free(struct use_table *t);
 bool use_declares(const struct use *u, const char *name);
 
 #endif

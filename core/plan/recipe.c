@@ -83,23 +83,23 @@ static void step_delete(struct plan *plan, size_t index)
     plan->n_step--;
 }
 
-static int recipe_step(struct plan *plan, const sph_step *declared, const cJSON *node,
-                       struct error *e)
+static struct step *recipe_step(struct plan *plan, const sph_step *declared, const cJSON *node,
+                                size_t index, struct error *e)
 {
-    struct step *s = step_insert(plan, plan->n_step, e);
+    struct step *s = step_insert(plan, index, e);
     if (!s)
-        return -1;
+        return NULL;
     bool eos = strcmp(declared->kind, SPH_KIND_EOS) == 0;
     s->kind = eos ? KIND_EOS : KIND_FUNCTION;
     s->moment = (enum moment)moment_find(declared->at);
     s->node = node;
-    return plan_name(&s->name, e, "%s", eos ? "eos" : declared->name);
+    return plan_name(&s->name, e, "%s", eos ? "eos" : declared->name) ? NULL : s;
 }
 
 static int recipe_from_scheme(struct plan *plan, struct error *e)
 {
     for (uint32_t i = 0; i < plan->scheme->steps.count; i++)
-        if (recipe_step(plan, list_at(&plan->scheme->steps, i), NULL, e))
+        if (!recipe_step(plan, list_at(&plan->scheme->steps, i), NULL, plan->n_step, e))
             return -1;
     return 0;
 }
@@ -166,22 +166,44 @@ static int recipe_edit(struct plan *plan, const struct scene_edit *edit, struct 
     return plan_name(&s->name, e, "%s", edit->function ? edit->function : edit->of);
 }
 
-/* A boundary condition brings steps of its own; they come after the scheme's. */
-static int recipe_boundary(struct plan *plan, const cJSON *node, struct error *e)
+/* Behind the last step of a name, or before the first; the end if there is none. */
+static size_t place_of(const struct plan *plan, const sph_step *declared)
 {
-    const struct document *d = plan->scene->doc;
-    const cJSON *name = cJSON_GetObjectItemCaseSensitive(node, "name");
-    if (!cJSON_IsString(name))
-        return document_fail(d, node, e, "a boundary condition needs a \"name\"");
-    const struct entry *entry = registry_find(plan->registry, KIND_BOUNDARY, name->valuestring);
+    size_t place = plan->n_step;
+    for (size_t i = 0; i < plan->n_step; i++) {
+        if (declared->after && strcmp(plan->step[i].name, declared->after) == 0)
+            place = i + 1;
+        else if (declared->after && place == i && plan->step[i].shared)
+            place = i + 1; /* behind those that came before with the same wish */
+        if (declared->before && strcmp(plan->step[i].name, declared->before) == 0)
+            return i;
+    }
+    return place;
+}
+
+/* A boundary condition brings steps of its own, each at the place that it asks for. */
+static int recipe_boundary(struct plan *plan, const struct scene_boundary *b, struct error *e)
+{
+    const struct entry *entry = registry_find(plan->registry, KIND_BOUNDARY, b->name);
     if (!entry)
-        return plan_unknown(plan, node, KIND_BOUNDARY, name->valuestring, e);
-    if (cJSON_GetArraySize(node) > 1)
-        return document_fail(d, node, e, "boundary conditions take no parameters in this version");
-    const sph_boundary *boundary = entry_boundary(entry);
-    for (uint32_t i = 0; i < boundary->steps.count; i++)
-        if (recipe_step(plan, list_at(&boundary->steps, i), node, e))
+        return plan_unknown(plan, b->node, KIND_BOUNDARY, b->name, e);
+    const sph_list *steps = &entry_boundary(entry)->steps;
+    if (!(entry->item->dims & (1u << plan->dim)))
+        return document_fail(plan->scene->doc, b->node, e,
+                             "the boundary condition \"%s\" does not work in %d dimensions",
+                             b->name, plan->dim);
+    for (uint32_t i = 0; i < steps->count; i++) {
+        const sph_step *declared = list_at(steps, i);
+        const bool own = declared->on == SPH_ON_BOUNDARY;
+        struct step *s = recipe_step(plan, declared, b->node, place_of(plan, declared), e);
+        if (!s)
             return -1;
+        s->shared = b->params;
+        s->to = own ? b->array : b->with;
+        s->n_to = own ? b->n_array : b->n_with;
+        s->from = own ? b->with : b->array;
+        s->n_from = own ? b->n_with : b->n_array;
+    }
     return 0;
 }
 
@@ -189,12 +211,9 @@ int recipe_make(struct plan *plan, struct error *e)
 {
     if (plan->scheme && recipe_from_scheme(plan, e))
         return -1;
-    const cJSON *boundary;
-    cJSON_ArrayForEach(boundary, plan->scene->boundaries)
-    {
-        if (recipe_boundary(plan, boundary, e))
+    for (size_t i = 0; i < plan->scene->n_boundary; i++)
+        if (recipe_boundary(plan, &plan->scene->boundary[i], e))
             return -1;
-    }
     for (size_t i = 0; i < plan->scene->scheme.n_edit; i++)
         if (recipe_edit(plan, &plan->scene->scheme.edit[i], e))
             return -1;

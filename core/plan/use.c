@@ -25,6 +25,11 @@ int use_set(struct use *u, const struct document *d, const cJSON *member, struct
 {
     struct error inner = {0};
     int status;
+    for (uint32_t i = 0; i < u->item->params.count; i++) {
+        const sph_param *p = list_at(&u->item->params, i);
+        if (p->type == SPH_PARAM_TABLE && strcmp(p->name, member->string) == 0)
+            return use_set_table(u, d, member, e);
+    }
     if (cJSON_IsNumber(member))
         status = config_set(&u->config, member->string, member->valuedouble, NULL, &inner);
     else if (cJSON_IsString(member))
@@ -80,5 +85,6 @@ void use_fini(struct use *u, struct registry *r)
     if (u->state && u->life && u->life->destroy)
         u->life->destroy(&r->host, u->state);
     config_fini(&u->config);
+    use_tables_free(u->tables);
     *u = (struct use){0};
 }

@@ -199,6 +199,15 @@ static int check_steps(const sph_list *steps, struct error *e)
                              SPH_KIND_FUNCTION, SPH_KIND_EOS);
         if (strcmp(s[i].kind, SPH_KIND_FUNCTION) == 0 && !check_is_name(s[i].name))
             return error_set(e, EXIT_REFUSED, "steps[%u] names no function", i);
+        if (s[i].on != SPH_ON_BOUNDARY && s[i].on != SPH_ON_BOUNDED)
+            return error_set(e, EXIT_REFUSED, "on of steps[%u] is %u, which is unknown", i,
+                             s[i].on);
+        if (s[i].after && s[i].before)
+            return error_set(e, EXIT_REFUSED, "steps[%u] has both after and before", i);
+        if ((s[i].after && !check_is_name(s[i].after)) ||
+            (s[i].before && !check_is_name(s[i].before)))
+            return error_set(e, EXIT_REFUSED, "%s of steps[%u] is not the name of a step",
+                             s[i].after ? "after" : "before", i);
     }
     return 0;
 }
@@ -213,6 +222,26 @@ static int check_nothing_declared(const sph_item *item, struct error *e)
     return 0;
 }
 
+static int check_boundary(const sph_boundary *b, struct error *e)
+{
+    return check_nothing_declared(b->item, e) ? -1 : check_steps(&b->steps, e);
+}
+
+/* A scheme's steps act on all arrays and stand in order. */
+static int check_plain_steps(const sph_list *steps, struct error *e)
+{
+    const sph_step *s = steps->data;
+
+    for (uint32_t i = 0; i < steps->count; i++)
+        if (s[i].on != SPH_ON_BOUNDARY || s[i].after || s[i].before)
+            return error_set(e, EXIT_REFUSED,
+                             "steps[%u] has %s, which is for boundary conditions only", i,
+                             s[i].after    ? "after"
+                             : s[i].before ? "before"
+                                           : "on");
+    return 0;
+}
+
 static int check_scheme(const sph_scheme *s, struct error *e)
 {
     if (check_nothing_declared(s->item, e))
@@ -223,7 +252,9 @@ static int check_scheme(const sph_scheme *s, struct error *e)
         return error_set(e, EXIT_REFUSED, "integrator is not a name");
     if (!(s->cfl > 0 && isfinite(s->cfl)))
         return error_set(e, EXIT_REFUSED, "cfl is %g, not a positive number", s->cfl);
-    return check_steps(&s->steps, e) ? -1 : check_rates(&s->rates, NULL, e);
+    return check_steps(&s->steps, e) || check_plain_steps(&s->steps, e)
+               ? -1
+               : check_rates(&s->rates, NULL, e);
 }
 
 int check_descriptor(enum kind kind, const void *descriptor, struct error *e)
@@ -238,7 +269,7 @@ int check_descriptor(enum kind kind, const void *descriptor, struct error *e)
     case KIND_BOUNDARY:
         return check_item(((const sph_boundary *)descriptor)->item, e)
                    ? -1
-                   : check_steps(&((const sph_boundary *)descriptor)->steps, e);
+                   : check_boundary(descriptor, e);
     case KIND_KERNEL:
         return check_item(((const sph_kernel *)descriptor)->item, e) ||
                        check_nothing_declared(((const sph_kernel *)descriptor)->item, e)

@@ -94,6 +94,16 @@ static int check_param(const sph_param *p, struct error *e)
 {
     if (check_texts(p->unit, p->doc, "parameter", p->name, e))
         return -1;
+    if (p->type != SPH_PARAM_NUMBER && p->type != SPH_PARAM_TABLE)
+        return error_set(e, EXIT_REFUSED, "type of parameter \"%s\" is %u, which is unknown",
+                         p->name, p->type);
+    if (p->type == SPH_PARAM_TABLE && (p->choices || !(isnan(p->def) || p->def == 0)))
+        return error_set(e, EXIT_REFUSED,
+                         "parameter \"%s\" is a table: it has no choices, and its default is 0 "
+                         "or, if it is mandatory, NaN",
+                         p->name);
+    if (p->type == SPH_PARAM_TABLE)
+        return 0;
     if (p->choices) {
         uint32_t n = count_choices(p->choices);
         if (n == 0)

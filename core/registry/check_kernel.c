@@ -49,6 +49,59 @@ static int check_terms(const sph_kernel *k, int dim, double *largest, struct err
     return 0;
 }
 
+/* Integral over space by Simpson's rule on the points between which loops lay cubics: right to
+ * 1e-10 for what is smooth on that scale. */
+static int check_function_integral(const sph_kernel *k, int dim, struct error *e)
+{
+    static const double area[4] = {0, 2, 2 * PI, 4 * PI};
+    const uint32_t n = 2 * KERNEL_FORM_CELLS;
+    const double step = k->support / n;
+    double sum = 0;
+
+    for (uint32_t i = 0; i <= n; i++) {
+        const double q = step * i;
+        const double w = k->value(q, (uint32_t)dim);
+        if (!isfinite(w) || !isfinite(k->slope(q, (uint32_t)dim)))
+            return error_set(e, EXIT_REFUSED, "%s at q = %g in %d dimensions is not finite",
+                             isfinite(w) ? "slope" : "value", q, dim);
+        sum += (i == 0 || i == n ? 1 : i % 2 ? 4 : 2) * w * pow(q, dim - 1);
+    }
+    sum *= step / 3 * area[dim] * k->norm[dim];
+    if (!(fabs(sum - 1) <= INTEGRAL_TOLERANCE))
+        return error_set(e, EXIT_REFUSED, "integral in %d dimensions is %.12g, not 1", dim, sum);
+    return 0;
+}
+
+/* The slope is that of the value, within what a central difference can tell. */
+static int check_function_slope(const sph_kernel *k, int dim, struct error *e)
+{
+    const double d = 1e-5 * k->support;
+
+    for (uint32_t i = 1; i < 64; i++) {
+        const double q = k->support * i / 64;
+        const double got = k->slope(q, (uint32_t)dim);
+        const double want =
+            (k->value(q + d, (uint32_t)dim) - k->value(q - d, (uint32_t)dim)) / (2 * d);
+        const double scale = fabs(k->value(0, (uint32_t)dim)) / k->support;
+        if (!(fabs(got - want) <= 1e-6 * (scale + fabs(want))))
+            return error_set(e, EXIT_REFUSED,
+                             "slope at q = %g in %d dimensions is %g, but the value changes by %g "
+                             "there",
+                             q, dim, got, want);
+    }
+    return 0;
+}
+
+static int check_function(const sph_kernel *k, int dim, struct error *e)
+{
+    if (!k->value || !k->slope)
+        return error_set(e, EXIT_REFUSED, "%s is given, but %s is NULL",
+                         k->value ? "value" : "slope", k->value ? "slope" : "value");
+    if (k->terms[dim].count > 0)
+        return error_set(e, EXIT_REFUSED, "terms[%d] and value are both given", dim);
+    return check_function_integral(k, dim, e) || check_function_slope(k, dim, e) ? -1 : 0;
+}
+
 int check_kernel(const sph_kernel *k, struct error *e)
 {
     sph_kernel_form form;
@@ -62,6 +115,11 @@ int check_kernel(const sph_kernel *k, struct error *e)
         if (!(k->norm[dim] > 0 && isfinite(k->norm[dim])))
             return error_set(e, EXIT_REFUSED, "norm[%d] is %g, not a positive number", dim,
                              k->norm[dim]);
+        if (k->value || k->slope) {
+            if (check_function(k, dim, e))
+                return -1;
+            continue;
+        }
         if (k->terms[dim].count == 0)
             return error_set(e, EXIT_REFUSED, "terms[%d] is empty, but dims claims %d dimensions",
                              dim, dim);

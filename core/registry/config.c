@@ -14,6 +14,7 @@ int config_init(struct sph_config *c, const sph_item *item, struct error *e)
     const size_t n = item->params.count;
 
     c->item = item;
+    c->table = NULL;
     c->value = calloc(n + 1, sizeof(*c->value));
     if (!c->value)
         return error_memory(e, "parameters", n * sizeof(*c->value));
@@ -25,7 +26,9 @@ int config_init(struct sph_config *c, const sph_item *item, struct error *e)
 void config_fini(struct sph_config *c)
 {
     free(c->value);
+    free(c->table);
     c->value = NULL;
+    c->table = NULL;
     c->item = NULL;
 }
 
@@ -108,12 +111,33 @@ int config_set(struct sph_config *c, const char *name, double number, const char
     for (uint32_t i = 0; i < c->item->params.count; i++) {
         if (strcmp(p[i].name, name) != 0)
             continue;
+        if (p[i].type == SPH_PARAM_TABLE)
+            return error_set(e, EXIT_USAGE, "%s is a table: give a file or an object of columns",
+                             name);
         if (p[i].choices)
             return set_choice(&c->value[i], &p[i], word, e);
         if (word)
             return error_set(e, EXIT_USAGE, "%s must be a number, not \"%s\"", name, word);
         return set_number(&c->value[i], &p[i], number, e);
     }
+    return unknown(c->item, name, e);
+}
+
+int config_set_table(struct sph_config *c, const char *name, const sph_table *table,
+                     struct error *e)
+{
+    const sph_param *p = c->item->params.data;
+
+    if (!c->table)
+        c->table = calloc(c->item->params.count + 1, sizeof(*c->table));
+    if (!c->table)
+        return error_memory(e, "parameters", c->item->params.count * sizeof(*c->table));
+    for (uint32_t i = 0; i < c->item->params.count; i++)
+        if (p[i].type == SPH_PARAM_TABLE && strcmp(p[i].name, name) == 0) {
+            c->table[i] = table;
+            c->value[i] = 1.0;
+            return 0;
+        }
     return unknown(c->item, name, e);
 }
 

@@ -17,6 +17,8 @@ static const size_t first_step = UP_TO(sph_step, name);
 static const size_t first_term = UP_TO(sph_kernel_term, reserved);
 static const size_t first_item = UP_TO(sph_item, props);
 static const size_t first_life = UP_TO(sph_life, destroy);
+static const size_t first_population = UP_TO(sph_population, born_props);
+static const size_t first_state = UP_TO(sph_state, restore);
 
 static const struct {
     size_t host, first;
@@ -205,6 +207,23 @@ static int copy_kernel(void **memory, sph_kernel *k, struct error *e)
 static int copy_scheme(void **memory, sph_scheme *s, struct error *e)
 {
     return copy_steps(memory, &s->steps, e) ? -1 : copy_rates(memory, &s->rates, e);
+}
+
+const sph_population *copy_population(void **memory, const sph_population *in, struct error *e)
+{
+    sph_population *out = take(memory, sizeof(*out), e);
+
+    if (!out || copy_struct(out, sizeof(*out), in, first_population, "descriptor", e) ||
+        copy_props(memory, &out->born_props, "born_props", e))
+        return NULL;
+    return out;
+}
+
+const sph_state *copy_state(void **memory, const sph_state *in, struct error *e)
+{
+    sph_state *out = take(memory, sizeof(*out), e);
+
+    return !out || copy_struct(out, sizeof(*out), in, first_state, "descriptor", e) ? NULL : out;
 }
 
 /* Where a descriptor keeps its item, by kind. */

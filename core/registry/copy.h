@@ -20,6 +20,10 @@ int copy_struct(void *out, size_t host, const void *in, size_t first, const char
 const void *copy_descriptor(enum kind kind, const void *descriptor, void **memory, struct error *e);
 void copy_free(void *memory);
 
+/* The same of what an extension declares of an item, in memory that its entry has already. */
+const sph_population *copy_population(void **memory, const sph_population *in, struct error *e);
+const sph_state *copy_state(void **memory, const sph_state *in, struct error *e);
+
 /* The item of a copy. */
 const sph_item *copy_item_of(enum kind kind, const void *copy);
 

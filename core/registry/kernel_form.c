@@ -2,6 +2,8 @@
 #include "registry/kernel_form.h"
 
 #include <math.h>
+#include <sph/kernel-value.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* The piece of a knot, made in its place (knots fall) if it is new; NULL if there is no room. */
@@ -46,6 +48,34 @@ static void derive(sph_kernel_piece *p)
         p->d[i] = -(double)(p->power + i) * p->c[i];
 }
 
+/* Value and slope (per cell) at the ends of each cell; both are 0 at the support. */
+static int tabulate(sph_kernel_form *f, const sph_kernel *k, struct error *e)
+{
+    const size_t n = 2 * ((size_t)KERNEL_FORM_CELLS + 1);
+    double *table = calloc(n, sizeof(*table));
+
+    if (!table)
+        return error_memory(e, "a kernel's table", n * sizeof(*table));
+    f->table = table;
+    f->n_table = KERNEL_FORM_CELLS;
+    f->cells = KERNEL_FORM_CELLS / k->support;
+    for (uint32_t i = 0; i < KERNEL_FORM_CELLS; i++) {
+        table[2 * i] = k->value((double)i / f->cells, f->dim);
+        table[2 * i + 1] = k->slope((double)i / f->cells, f->dim) / f->cells;
+    }
+    /* The limit from inside: a kernel that ends with a jump keeps it. */
+    table[2 * KERNEL_FORM_CELLS] = k->value(k->support, f->dim);
+    table[2 * KERNEL_FORM_CELLS + 1] = k->slope(k->support, f->dim) / f->cells;
+    return 0;
+}
+
+void kernel_form_fini(sph_kernel_form *f)
+{
+    free((void *)(uintptr_t)f->table);
+    f->table = NULL;
+    f->n_table = 0;
+}
+
 int kernel_form_make(sph_kernel_form *out, const sph_kernel *k, int dim, struct error *e)
 {
     const sph_kernel_term *t;
@@ -61,6 +91,8 @@ int kernel_form_make(sph_kernel_form *out, const sph_kernel *k, int dim, struct 
     out->dim = (uint32_t)dim;
     out->support = k->support;
     out->norm = k->norm[dim];
+    if (k->value)
+        return tabulate(out, k, e);
     for (uint32_t i = 0; i < terms->count; i++) {
         sph_kernel_piece *p = piece_at(out, t[i].knot);
 
@@ -80,32 +112,12 @@ int kernel_form_make(sph_kernel_form *out, const sph_kernel *k, int dim, struct 
     return 0;
 }
 
-static double clamped(double knot, uint32_t power, const double *c, uint32_t n, double q)
-{
-    const double t = knot - q;
-    double sum = 0;
-
-    if (t <= 0)
-        return 0;
-    for (uint32_t i = n; i-- > 0;)
-        sum = sum * t + c[i];
-    return sum * pow(t, power);
-}
-
 double kernel_form_w(const sph_kernel_form *f, double q)
 {
-    double sum = 0;
-
-    for (uint32_t i = 0; i < f->n_pieces; i++)
-        sum += clamped(f->piece[i].knot, f->piece[i].power, f->piece[i].c, f->piece[i].n_coef, q);
-    return f->norm * sum;
+    return sph_kernel_w(f, q);
 }
 
 double kernel_form_dw(const sph_kernel_form *f, double q)
 {
-    double sum = 0;
-
-    for (uint32_t i = 0; i < f->n_pieces; i++)
-        sum += clamped(f->piece[i].knot, f->piece[i].dpower, f->piece[i].d, f->piece[i].dn_coef, q);
-    return f->norm * sum;
+    return sph_kernel_dw(f, q);
 }

@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "registry/check.h"
 #include "registry/copy.h"
+#include "registry/extension.h"
 
 #include <math.h>
 #include <pthread.h>
@@ -56,8 +57,7 @@ static sph_status host_fail(const sph_host *host, sph_status status, const char 
 static const void *host_extension(const sph_host *host, const char *id)
 {
     (void)host;
-    (void)id;
-    return NULL;
+    return extension_find(id);
 }
 
 static void host_log(const sph_host *host, int32_t level, const char *message)
@@ -171,9 +171,21 @@ static sph_status host_register_item(const sph_host *host, const char *kind, con
         error_set(&e, EXIT_REFUSED, "%s: descriptor is NULL", kind_label[k]);
     else if (add_item(r, (enum kind)k, descriptor, &e) == 0)
         return SPH_OK;
-    keep(r, e.text);
+    return registry_refuse(r, &e);
+}
+
+bool registry_is_loading(const struct registry *r)
+{
+    return ((const struct guard *)r->lock)->loading != NULL;
+}
+
+sph_status registry_refuse(struct registry *r, const struct error *e)
+{
+    struct guard *g = r->lock;
+
+    keep(r, e->text);
     if (!g->refused)
-        g->why = e;
+        g->why = *e;
     g->refused = 1;
     return SPH_E_INVALID;
 }

@@ -29,9 +29,11 @@ extern const char *const kind_id[KIND_COUNT];
 struct entry {
     enum kind kind;
     const sph_item *item;
-    const void *descriptor; /* sph_function, sph_eos, ... by kind */
-    size_t plugin;          /* index into registry.plugin */
-    void *memory;           /* private: what the copies lie in */
+    const void *descriptor;           /* sph_function, sph_eos, ... by kind */
+    size_t plugin;                    /* index into registry.plugin */
+    const sph_population *population; /* of a function; or NULL */
+    const sph_state *state;           /* or NULL */
+    void *memory;                     /* private: what the copies lie in */
 };
 
 struct plugin {
@@ -64,6 +66,11 @@ void registry_fini(struct registry *r);
  * close(handle) when it is done with the plugin; close may be NULL. [main] */
 int registry_add(struct registry *r, const char *path, sph_plugin_entry_fn entry, void *handle,
                  void (*close)(void *handle), struct error *e);
+
+/* For extensions, whose functions a plugin calls in its init: does one run now; the plugin is to be
+ * refused with this sentence (returns SPH_E_INVALID). */
+bool registry_is_loading(const struct registry *r);
+sph_status registry_refuse(struct registry *r, const struct error *e);
 
 /* By kind and name; NULL if there is none. */
 const struct entry *registry_find(const struct registry *r, enum kind kind, const char *name);
@@ -107,6 +114,7 @@ static inline const void *list_at(const sph_list *l, uint32_t i)
 struct sph_config {
     const sph_item *item;
     double *value;
+    const sph_table **table; /* [params], NULL where none; NULL: none at all. Not owned */
 };
 /* All at their defaults (NaN where mandatory). */
 int config_init(struct sph_config *c, const sph_item *item, struct error *e);
@@ -115,6 +123,9 @@ void config_fini(struct sph_config *c);
  * "X must lie between ..", "X is one of a, b", without naming the place: the caller adds that. */
 int config_set(struct sph_config *c, const char *name, double number, const char *word,
                struct error *e);
+/* Sets one that is a table, which outlives the configuration. */
+int config_set_table(struct sph_config *c, const char *name, const sph_table *table,
+                     struct error *e);
 /* Fails if a mandatory parameter is still unset. */
 int config_check(const struct sph_config *c, struct error *e);
 

@@ -99,5 +99,5 @@ int run_advance(struct run *r, struct error *e)
         r->cost.integrate += omp_get_wtime() - t;
     }
     r->time = begin + r->dt;
-    return run_passes(r, MOMENT_FINISH, e);
+    return run_passes(r, MOMENT_FINISH, e) ? -1 : run_population(r, e);
 }

@@ -66,10 +66,8 @@ static void merge(const sph_reduction *d, double value, const char **name, doubl
     if (k == *n) {
         name[k] = d->name;
         all[(*n)++] = value;
-    } else if (d->op == SPH_REDUCE_SUM || isnan(all[k]) || isnan(value)) {
-        all[k] += value; /* a NaN comes through */
     } else {
-        all[k] = d->op == SPH_REDUCE_MIN ? fmin(all[k], value) : fmax(all[k], value);
+        all[k] = reduction_merge(d->op, all[k], value);
     }
 }
 
@@ -160,7 +158,8 @@ static int choose_dt(struct loop *l, double *dt, struct error *e)
     if (isnan(full))
         return error_set(e, EXIT_RUN, "the time step is no longer a number at step %llu, t = %g",
                          (unsigned long long)r->step, r->time);
-    full = fmin(full, l->scene->time.dt_max);
+    full = fmin(fmin(full, l->scene->time.dt_max), r->proposed);
+    r->proposed = INFINITY;
     if (!(full < INFINITY) && full > 0.0)
         return error_set(
             e, EXIT_USAGE,

@@ -140,7 +140,8 @@ static void batch_begin(const struct run *r, const struct pass *p, sph_batch *b,
                      .time = r->time,
                      .dt = r->dt,
                      .step = r->step,
-                     .host = &r->plan->registry->host};
+                     .host = &r->plan->registry->host,
+                     .run = &r->hooks};
     if (p->shape == SPH_PAIR) {
         b->x_dst = particles_column(&a->p, a->position);
         b->h_dst = particles_column(&a->p, a->smoothing);
@@ -233,12 +234,28 @@ static void count_pairs(struct run *r, struct pass *p, const struct ranges *rang
     }
 }
 
+/* The plugin's own turn: no particles, one thread. */
+static int prepare(struct run *r, const struct pass *p, struct error *e)
+{
+    if (!p->function || !p->function->prepare)
+        return 0;
+    sph_batch b;
+    uint64_t zero = 0;
+    struct ranges once = {&zero, &zero, 1, 1};
+    batch_begin(r, p, &b, p->space);
+    b.dst = NULL;
+    b.x_dst = b.h_dst = (sph_column){0};
+    return call(r, p, p->function->prepare, &b, &once, e);
+}
+
 static int run_pass(struct run *r, struct pass *p, struct error *e)
 {
     const struct particles *particles = &r->plan->array[p->dst.array].p;
     double begin = omp_get_wtime(), other = r->cost.neighbour;
     struct ranges ranges = {0};
-    int status = ranges_all(&ranges, particles->n, e);
+    int status = prepare(r, p, e);
+    if (!status)
+        status = ranges_all(&ranges, particles->n, e);
     for (uint32_t k = 0; !status && ranges.n; k++) {
         status = sweep(r, p, &ranges, e);
         if (status)
@@ -276,6 +293,25 @@ static double reduce(const struct plan *plan, const struct reduction *d)
     return out;
 }
 
+/* Right after its pass: later steps, and other functions, see what it came to. */
+static void reduce_pass(struct run *r, size_t pass)
+{
+    for (size_t i = 0; i < r->plan->n_reduction; i++)
+        if (r->plan->reduction[i].pass == pass)
+            r->reduced[i] = reduce(r->plan, &r->plan->reduction[i]);
+}
+
+static void bound_dt(struct run *r)
+{
+    r->dt_bound = INFINITY;
+    for (size_t i = 0; i < r->plan->n_reduction; i++) {
+        const struct reduction *d = &r->plan->reduction[i];
+        if (d->declared->use == SPH_USE_TIME_STEP && !isnan(r->dt_bound) &&
+            !(r->reduced[i] >= r->dt_bound))
+            r->dt_bound = r->reduced[i]; /* a NaN stays */
+    }
+}
+
 int run_passes(struct run *r, enum moment moment, struct error *e)
 {
     if (moment != MOMENT_FINISH && run_lists(r, false, e))
@@ -285,16 +321,9 @@ int run_passes(struct run *r, enum moment moment, struct error *e)
             continue;
         if (run_pass(r, &r->plan->pass[i], e))
             return -1;
+        reduce_pass(r, i);
     }
-    if (moment != MOMENT_EVALUATE)
-        return 0;
-    r->dt_bound = INFINITY;
-    for (size_t i = 0; i < r->plan->n_reduction; i++) {
-        const struct reduction *d = &r->plan->reduction[i];
-        r->reduced[i] = reduce(r->plan, d);
-        if (d->declared->use == SPH_USE_TIME_STEP && !isnan(r->dt_bound) &&
-            !(r->reduced[i] >= r->dt_bound))
-            r->dt_bound = r->reduced[i]; /* a NaN stays */
-    }
+    if (moment == MOMENT_EVALUATE)
+        bound_dt(r);
     return 0;
 }

@@ -6,6 +6,8 @@
 #include "domain/sides.h"
 #include "neighbours/neighbours.h"
 #include "plan/plan.h"
+#include "registry/extension.h"
+#include <math.h>
 
 struct audit;
 
@@ -19,7 +21,7 @@ struct totals {
 
 struct run_cost {
     double loop, neighbour, integrate, io;
-    uint64_t particle_updates, pairs, list_builds, sorts, unfinished;
+    uint64_t particle_updates, pairs, list_builds, sorts, unfinished, created;
 };
 
 struct run {
@@ -37,7 +39,9 @@ struct run {
     bool lists_made,
         lists_suspect; /* suspect: something moved or grew since they were last checked */
     uint64_t builds_since_sort;
-    double *reduced; /* [reduction]: last value */
+    double *reduced;      /* [reduction]: last value; NaN before the first */
+    struct sph_run hooks; /* what a batch's `run` points to */
+    double proposed;      /* bound on the next dt, cfl not applied; INFINITY: none */
     struct run_cost cost;
     struct audit *audit; /* NULL: off */
 };
@@ -52,8 +56,19 @@ int run_lists(struct run *r, bool within, struct error *e);
 void run_refresh(struct run *r, size_t array, int column);
 size_t run_list_bytes(const struct run *r);
 
+/* Two values of one reduction, over different particles. A NaN comes through. */
+static inline double reduction_merge(uint32_t op, double a, double b)
+{
+    if (op == SPH_REDUCE_SUM || isnan(a) || isnan(b))
+        return a + b;
+    return op == SPH_REDUCE_MIN ? fmin(a, b) : fmax(a, b);
+}
+
 /* passes.c. All passes of a moment, in order. */
 int run_passes(struct run *r, enum moment moment, struct error *e);
+
+/* population.c. Removes and creates what functions have asked for at the end of a step. */
+int run_population(struct run *r, struct error *e);
 
 /* advance.c. One step of the integrator with dt = r->dt. */
 int run_advance(struct run *r, struct error *e);

@@ -117,15 +117,6 @@ static int fill_glass(const struct scene *s, size_t a, size_t k, struct points *
 
 /* -- Files ----------------------------------------------------------------------------------- */
 
-/* The file's path, relative to the scene's folder. */
-static char *path_of(const struct scene *s, const struct scene_fill *f)
-{
-    const char *slash = strrchr(s->doc->path, '/');
-    if (f->file[0] == '/' || !slash)
-        return text_format("%s", f->file);
-    return text_format("%.*s/%s", (int)(slash - s->doc->path), s->doc->path, f->file);
-}
-
 /* Gives the table's columns the names that the scene has for them. */
 static int rename_columns(const struct scene *s, const struct scene_fill *f, struct table *t,
                           struct error *e)
@@ -157,7 +148,7 @@ static int load_table(const struct scene *s, const struct scene_fill *f, struct 
                       struct error *e)
 {
     struct error inner = {0};
-    char *path = path_of(s, f);
+    char *path = document_relative(s->doc, f->file);
     if (!path)
         return error_memory(e, "a path", 0);
     int status = table_read(t, path, f->file_array, &inner);

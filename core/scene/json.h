@@ -54,6 +54,10 @@ const char *document_pointer(const struct document *d, const cJSON *node, char *
 /* Line and column (from 1; in characters) of byte `offset` of the text. */
 void document_line(const struct document *d, size_t offset, size_t *line, size_t *column);
 
+/* The path of a file that the document names: relative to the document's folder. The caller frees it;
+ * NULL when out of memory. */
+char *document_relative(const struct document *d, const char *file);
+
 /* An object with the members of `object` whose key is not known[0..n), for what is left to others
  * (parameters). Its members are references, which messages may point at as at the originals. It
  * belongs to the document. NULL when out of memory. */

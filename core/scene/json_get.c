@@ -215,6 +215,14 @@ static cJSON *reference(struct document *d, const cJSON *node)
     return copy;
 }
 
+char *document_relative(const struct document *d, const char *file)
+{
+    const char *slash = strrchr(d->path, '/');
+    if (file[0] == '/' || !slash)
+        return text_format("%s", file);
+    return text_format("%.*s/%s", (int)(slash - d->path), d->path, file);
+}
+
 const cJSON *document_rest(struct document *d, const cJSON *object, const char *const *known,
                            size_t n)
 {

@@ -307,21 +307,31 @@ static int compile_materials(struct scene *s, const cJSON *node, struct error *e
 
 static int compile_boundaries(struct scene *s, const cJSON *node, struct error *e)
 {
+    static const char *const keys[] = {"name", "array", "with"};
     const cJSON *item;
-    const char *name;
     if (!node)
         return 0;
     if (!cJSON_IsArray(node))
         return document_fail(s->doc, node, e, "give an array of boundary conditions");
+    s->boundary = scene_alloc(s, (size_t)cJSON_GetArraySize(node), sizeof *s->boundary, e);
+    if (!s->boundary)
+        return -1;
     cJSON_ArrayForEach(item, node)
     {
+        struct scene_boundary *b = &s->boundary[s->n_boundary];
+        b->node = item;
         if (!cJSON_IsObject(item))
             return document_fail(s->doc, item, e,
                                  "a boundary condition is an object with \"name\"");
-        if (json_string(s->doc, item, "name", true, &name, e) < 0)
+        if (json_string(s->doc, item, "name", true, &b->name, e) < 0 ||
+            scene_arrays(s, item, "array", &b->array, &b->n_array, e) < 0 ||
+            scene_arrays(s, item, "with", &b->with, &b->n_with, e) < 0)
             return -1;
+        b->params = document_rest(s->doc, item, keys, COUNT(keys));
+        if (!b->params)
+            return error_memory(e, "a boundary condition", 0);
+        s->n_boundary++;
     }
-    s->boundaries = node;
     return 0;
 }
 

@@ -103,6 +103,15 @@ struct scene_compare {
     size_t n_fields;
 };
 
+/* A boundary condition on some arrays, for others. */
+struct scene_boundary {
+    const cJSON *node;
+    const char *name;
+    const char **array, **with; /* its own arrays, and those that it bounds; NULL: all */
+    size_t n_array, n_with;
+    const cJSON *params; /* the object minus the known keys */
+};
+
 /* A probe: a number made of the particles at the end (and shown in the table). */
 enum probe_kind { PROBE_MEAN, PROBE_CROSSING, PROBE_MIN, PROBE_MAX };
 struct scene_probe {
@@ -132,7 +141,8 @@ struct scene {
     size_t n_material;
     struct scene_array *array;
     size_t n_array;
-    const cJSON *boundaries; /* array or NULL; resolved by the plan */
+    struct scene_boundary *boundary;
+    size_t n_boundary;
     struct {
         const cJSON *node;
         const char *name;

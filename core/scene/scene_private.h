@@ -17,6 +17,9 @@ int scene_check_field(const struct scene *s, const cJSON *node, struct error *e)
 /* An array of texts, member `key` (or one text alone); `*out` stays NULL if absent. */
 int scene_strings(struct scene *s, const cJSON *object, const char *key, const char ***out,
                   size_t *n, struct error *e);
+/* The same, of names of the scene's arrays. */
+int scene_arrays(struct scene *s, const cJSON *object, const char *key, const char ***out,
+                 size_t *n, struct error *e);
 /* A member that names one of the scene's arrays. */
 int scene_array_name(const struct scene *s, const cJSON *object, const char *key, bool required,
                      const char **out, struct error *e);

@@ -7,9 +7,8 @@ static const char *const edit_keys[] = {"insert", "delete", "replace",   "with",
                                         "before", "after",  "function",  "of",   "at",
                                         "to",     "from",   "expression"};
 
-/* The arrays that an operation reaches. */
-static int compile_arrays(struct scene *s, const cJSON *node, const char *key, const char ***out,
-                          size_t *n, struct error *e)
+int scene_arrays(struct scene *s, const cJSON *node, const char *key, const char ***out, size_t *n,
+                 struct error *e)
 {
     char brief[JSON_BRIEF], hint[512];
     const char *names[64];
@@ -125,8 +124,8 @@ static int compile_edit(struct scene *s, const cJSON *node, struct scene_edit *x
             "an edit has one of \"insert\", \"delete\", \"replace\" and \"operation\"");
     if (check_keys(s, node, verb, e) < 0 || compile_verb(s, node, x, e) < 0 ||
         scene_word(s, node, "at", "moment", moments, COUNT(moments), &moment, e) < 0 ||
-        compile_arrays(s, node, "to", &x->to, &x->n_to, e) < 0 ||
-        compile_arrays(s, node, "from", &x->from, &x->n_from, e) < 0)
+        scene_arrays(s, node, "to", &x->to, &x->n_to, e) < 0 ||
+        scene_arrays(s, node, "from", &x->from, &x->n_from, e) < 0)
         return -1;
     x->at = moments[moment];
     x->params = document_rest(s->doc, node, edit_keys, COUNT(edit_keys));

@@ -5,18 +5,18 @@
 #include <math.h>
 
 static const sph_param params[] = {
-    {"gamma", "", "ratio of the specific heats", 5. / 3, 1.000001, 100, NULL},
+    SPH_PARAM("gamma", "", "ratio of the specific heats", 5. / 3, 1.000001, 100),
 };
 static const sph_prop props[] = {
-    {"rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_READ, NAN},
-    {"u", "J/kg", "specific internal energy", SPH_SCALAR, SPH_DST_READ, NAN},
-    {"p", "J/m^d", "pressure", SPH_SCALAR, SPH_DST_WRITE, 0},
-    {"cs", "m/s", "speed of sound", SPH_SCALAR, SPH_DST_WRITE, 0},
+    SPH_PROP("rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_READ, NAN),
+    SPH_PROP("u", "J/kg", "specific internal energy", SPH_SCALAR, SPH_DST_READ, NAN),
+    SPH_PROP("p", "J/m^d", "pressure", SPH_SCALAR, SPH_DST_WRITE, 0),
+    SPH_PROP("cs", "m/s", "speed of sound", SPH_SCALAR, SPH_DST_WRITE, 0),
 };
 static const sph_prop inverse_props[] = {
-    {"rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_READ, NAN},
-    {"p", "J/m^d", "pressure", SPH_SCALAR, SPH_DST_READ, NAN},
-    {"u", "J/kg", "specific internal energy", SPH_SCALAR, SPH_DST_WRITE, 0},
+    SPH_PROP("rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_READ, NAN),
+    SPH_PROP("p", "J/m^d", "pressure", SPH_SCALAR, SPH_DST_READ, NAN),
+    SPH_PROP("u", "J/kg", "specific internal energy", SPH_SCALAR, SPH_DST_WRITE, 0),
 };
 
 static sph_status only_double(const sph_batch *b)
@@ -61,15 +61,19 @@ static sph_status inverse(const sph_batch *b)
 }
 
 static const sph_item item = {
-    (uint32_t)sizeof(sph_item),
-    SPH_ALL_DIMS,
-    "ideal-gas",
-    "ideal gas with constant specific heats: p = (gamma - 1) rho u",
-    "Landau & Lifshitz, Fluid Mechanics (1987), section 83",
-    SPH_LIST(params),
-    SPH_LIST(props),
+    .size = (uint32_t)sizeof(sph_item),
+    .dims = SPH_ALL_DIMS,
+    .name = "ideal-gas",
+    .doc = "ideal gas with constant specific heats: p = (gamma - 1) rho u",
+    .source = "Landau & Lifshitz, Fluid Mechanics (1987), section 83",
+    .params = SPH_LIST(params),
+    .props = SPH_LIST(props),
 };
 
 const sph_eos ideal_gas = {
-    (uint32_t)sizeof(sph_eos), 0, &item, NULL, run, inverse, SPH_LIST(inverse_props),
+    .size = (uint32_t)sizeof(sph_eos),
+    .item = &item,
+    .run = run,
+    .inverse = inverse,
+    .inverse_props = SPH_LIST(inverse_props),
 };

@@ -7,18 +7,18 @@
 
 enum { PARAM_GAMMA, PARAM_RHO0, PARAM_V0 };
 static const sph_param params[] = {
-    {"gamma", "", "ratio of the specific heats", 5. / 3, 1.000001, 100, NULL},
-    {"rho0", "kg/m^d", "density at the start", 1, 1e-300, 1e300, NULL},
-    {"v0", "m/s", "speed of fall", 1, 1e-300, 1e300, NULL},
+    SPH_PARAM("gamma", "", "ratio of the specific heats", 5. / 3, 1.000001, 100),
+    SPH_PARAM("rho0", "kg/m^d", "density at the start", 1, 1e-300, 1e300),
+    SPH_PARAM("v0", "m/s", "speed of fall", 1, 1e-300, 1e300),
 };
 
 enum { PROP_X, PROP_RHO, PROP_P, PROP_V, PROP_U };
 static const sph_prop props[] = {
-    {"x", "m", "position", SPH_VECTOR, SPH_DST_READ, NAN},
-    {"rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_WRITE, 0},
-    {"p", "J/m^d", "pressure", SPH_SCALAR, SPH_DST_WRITE, 0},
-    {"v", "m/s", "velocity", SPH_VECTOR, SPH_DST_WRITE, 0},
-    {"u", "J/kg", "specific internal energy", SPH_SCALAR, SPH_DST_WRITE, 0},
+    SPH_PROP("x", "m", "position", SPH_VECTOR, SPH_DST_READ, NAN),
+    SPH_PROP("rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_WRITE, 0),
+    SPH_PROP("p", "J/m^d", "pressure", SPH_SCALAR, SPH_DST_WRITE, 0),
+    SPH_PROP("v", "m/s", "velocity", SPH_VECTOR, SPH_DST_WRITE, 0),
+    SPH_PROP("u", "J/kg", "specific internal energy", SPH_SCALAR, SPH_DST_WRITE, 0),
 };
 
 struct state {
@@ -81,13 +81,17 @@ static sph_status run(const sph_batch *b)
 }
 
 static const sph_item item = {
-    (uint32_t)sizeof(sph_item),
-    SPH_ALL_DIMS,
-    "noh",
-    "Noh's implosion of cold gas onto a wall (1D), an axis (2D) or a point (3D)",
-    "Noh 1987, doi:10.1016/0021-9991(87)90074-X, section 2",
-    SPH_LIST(params),
-    SPH_LIST(props),
+    .size = (uint32_t)sizeof(sph_item),
+    .dims = SPH_ALL_DIMS,
+    .name = "noh",
+    .doc = "Noh's implosion of cold gas onto a wall (1D), an axis (2D) or a point (3D)",
+    .source = "Noh 1987, doi:10.1016/0021-9991(87)90074-X, section 2",
+    .params = SPH_LIST(params),
+    .props = SPH_LIST(props),
 };
 
-const sph_exact noh = {(uint32_t)sizeof(sph_exact), 0, &item, NULL, run};
+const sph_exact noh = {
+    .size = (uint32_t)sizeof(sph_exact),
+    .item = &item,
+    .run = run,
+};

@@ -8,23 +8,23 @@
 #include <stdlib.h>
 
 static const sph_param params[] = {
-    {"rho_l", "kg/m^d", "density left of x0", 1, 0, 1e300, NULL},
-    {"u_l", "m/s", "velocity left of x0", 0, -1e300, 1e300, NULL},
-    {"p_l", "J/m^d", "pressure left of x0", 1, 0, 1e300, NULL},
-    {"rho_r", "kg/m^d", "density right of x0", .125, 0, 1e300, NULL},
-    {"u_r", "m/s", "velocity right of x0", 0, -1e300, 1e300, NULL},
-    {"p_r", "J/m^d", "pressure right of x0", .1, 0, 1e300, NULL},
-    {"gamma", "", "ratio of the specific heats", 1.4, 1.000001, 100, NULL},
-    {"x0", "m", "where the two states meet", 0, -1e300, 1e300, NULL},
+    SPH_PARAM("rho_l", "kg/m^d", "density left of x0", 1, 0, 1e300),
+    SPH_PARAM("u_l", "m/s", "velocity left of x0", 0, -1e300, 1e300),
+    SPH_PARAM("p_l", "J/m^d", "pressure left of x0", 1, 0, 1e300),
+    SPH_PARAM("rho_r", "kg/m^d", "density right of x0", .125, 0, 1e300),
+    SPH_PARAM("u_r", "m/s", "velocity right of x0", 0, -1e300, 1e300),
+    SPH_PARAM("p_r", "J/m^d", "pressure right of x0", .1, 0, 1e300),
+    SPH_PARAM("gamma", "", "ratio of the specific heats", 1.4, 1.000001, 100),
+    SPH_PARAM("x0", "m", "where the two states meet", 0, -1e300, 1e300),
 };
 
 enum { PROP_X, PROP_RHO, PROP_P, PROP_V, PROP_U };
 static const sph_prop props[] = {
-    {"x", "m", "position; only its first component matters", SPH_VECTOR, SPH_DST_READ, NAN},
-    {"rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_WRITE, 0},
-    {"p", "J/m^d", "pressure", SPH_SCALAR, SPH_DST_WRITE, 0},
-    {"v", "m/s", "velocity", SPH_VECTOR, SPH_DST_WRITE, 0},
-    {"u", "J/kg", "specific internal energy", SPH_SCALAR, SPH_DST_WRITE, 0},
+    SPH_PROP("x", "m", "position; only its first component matters", SPH_VECTOR, SPH_DST_READ, NAN),
+    SPH_PROP("rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_WRITE, 0),
+    SPH_PROP("p", "J/m^d", "pressure", SPH_SCALAR, SPH_DST_WRITE, 0),
+    SPH_PROP("v", "m/s", "velocity", SPH_VECTOR, SPH_DST_WRITE, 0),
+    SPH_PROP("u", "J/kg", "specific internal energy", SPH_SCALAR, SPH_DST_WRITE, 0),
 };
 
 struct side {
@@ -249,16 +249,26 @@ static sph_status run(const sph_batch *b)
     return SPH_OK;
 }
 
-static const sph_life life = {(uint32_t)sizeof(sph_life), 0, create, destroy};
-
-static const sph_item item = {
-    (uint32_t)sizeof(sph_item),
-    SPH_ALL_DIMS,
-    "riemann",
-    "Riemann's problem of an ideal gas along x, vacuum included; the defaults are Sod's",
-    "Toro 2009, doi:10.1007/b79761, chapter 4; Sod 1978, doi:10.1016/0021-9991(78)90023-2",
-    SPH_LIST(params),
-    SPH_LIST(props),
+static const sph_life life = {
+    .size = (uint32_t)sizeof(sph_life),
+    .create = create,
+    .destroy = destroy,
 };
 
-const sph_exact riemann = {(uint32_t)sizeof(sph_exact), 0, &item, &life, run};
+static const sph_item item = {
+    .size = (uint32_t)sizeof(sph_item),
+    .dims = SPH_ALL_DIMS,
+    .name = "riemann",
+    .doc = "Riemann's problem of an ideal gas along x, vacuum included; the defaults are Sod's",
+    .source =
+        "Toro 2009, doi:10.1007/b79761, chapter 4; Sod 1978, doi:10.1016/0021-9991(78)90023-2",
+    .params = SPH_LIST(params),
+    .props = SPH_LIST(props),
+};
+
+const sph_exact riemann = {
+    .size = (uint32_t)sizeof(sph_exact),
+    .item = &item,
+    .life = &life,
+    .run = run,
+};

@@ -9,18 +9,19 @@ enum { M, H, RHO, SLOPE, BUSY };
 enum { ETA, TOLERANCE };
 
 static const sph_param params[] = {
-    {"eta", "", "smoothing length in units of (m / rho)^(1/d)", 1.5, 1.0, 4.0, NULL},
-    {"h_tolerance", "", "relative change of h at which its iteration ends", 1e-3, 1e-15, 1e-2,
-     NULL},
+    SPH_PARAM("eta", "", "smoothing length in units of (m / rho)^(1/d)", 1.5, 1.0, 4.0),
+    SPH_PARAM("h_tolerance", "", "relative change of h at which its iteration ends", 1e-3, 1e-15,
+              1e-2),
 };
 
 static const sph_prop props[] = {
-    {"m", "kg", "mass", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN},
-    {"h", "m", "smoothing length", SPH_SCALAR, SPH_DST_UPDATE, NAN},
-    {"rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_SUM, 0.0},
-    {"drho_dh", "kg/m^(d+1)", "derivative of the summed density with h", SPH_SCALAR,
-     SPH_DST_SUM | SPH_WORK, 0.0},
-    {"h_busy", "", "1 while the iteration of h goes on", SPH_INT32, SPH_DST_WRITE | SPH_WORK, 0.0},
+    SPH_PROP("m", "kg", "mass", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN),
+    SPH_PROP("h", "m", "smoothing length", SPH_SCALAR, SPH_DST_UPDATE, NAN),
+    SPH_PROP("rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_SUM, 0.0),
+    SPH_PROP("drho_dh", "kg/m^(d+1)", "derivative of the summed density with h", SPH_SCALAR,
+             SPH_DST_SUM | SPH_WORK, 0.0),
+    SPH_PROP("h_busy", "", "1 while the iteration of h goes on", SPH_INT32,
+             SPH_DST_WRITE | SPH_WORK, 0.0),
 };
 
 #define SPH_LOOP sweep
@@ -72,14 +73,14 @@ static sph_status update(const sph_batch *b)
 }
 
 static const sph_item item = {
-    SIZE(sph_item),
-    SPH_ALL_DIMS,
-    "gsph-density",
-    "density summation, solved together with the smoothing length",
-    "Springel & Hernquist 2002, doi:10.1046/j.1365-8711.2002.05445.x, eq. 7; "
-    "Dehnen & Aly 2012, doi:10.1111/j.1365-2966.2012.21439.x, section 2.4",
-    SPH_LIST(params),
-    SPH_LIST(props),
+    .size = SIZE(sph_item),
+    .dims = SPH_ALL_DIMS,
+    .name = "gsph-density",
+    .doc = "density summation, solved together with the smoothing length",
+    .source = "Springel & Hernquist 2002, doi:10.1046/j.1365-8711.2002.05445.x, eq. 7; "
+              "Dehnen & Aly 2012, doi:10.1111/j.1365-2966.2012.21439.x, section 2.4",
+    .params = SPH_LIST(params),
+    .props = SPH_LIST(props),
 };
 
 const sph_function gsph_density = {

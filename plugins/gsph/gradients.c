@@ -7,22 +7,26 @@ enum { M, RHO, P, V, GRHO, GP, GV, MOMENT, SPREAD };
 enum { SHARE };
 
 static const sph_param params[] = {
-    {"volume_share", "",
-     "how much of the gradients' volume correction the forces take: 0 none, 1 all", 0.4, 0.0, 1.0,
-     NULL},
+    SPH_PARAM("volume_share", "",
+              "how much of the gradients' volume correction the forces take: 0 none, 1 all", 0.4,
+              0.0, 1.0),
 };
 
 static const sph_prop props[] = {
-    {"m", "kg", "mass", SPH_SCALAR, SPH_SRC_READ, NAN},
-    {"rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN},
-    {"p", "J/m^d", "pressure", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN},
-    {"v", "m/s", "velocity", SPH_VECTOR, SPH_DST_READ | SPH_SRC_READ, 0.0},
-    {"grad_rho", "kg/m^(d+1)", "gradient of the density", SPH_VECTOR, SPH_DST_SUM | SPH_WORK, 0.0},
-    {"grad_p", "J/m^(d+1)", "gradient of the pressure", SPH_VECTOR, SPH_DST_SUM | SPH_WORK, 0.0},
-    {"grad_v", "1/s", "velocity gradient, a row a component", SPH_MATRIX, SPH_DST_SUM | SPH_WORK,
-     0.0},
-    {"moment", "", "moment matrix of the gradients", SPH_MATRIX, SPH_DST_SUM | SPH_WORK, 0.0},
-    {"volume", "", "volume correction of the forces", SPH_SCALAR, SPH_DST_SUM | SPH_WORK, 0.0},
+    SPH_PROP("m", "kg", "mass", SPH_SCALAR, SPH_SRC_READ, NAN),
+    SPH_PROP("rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN),
+    SPH_PROP("p", "J/m^d", "pressure", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN),
+    SPH_PROP("v", "m/s", "velocity", SPH_VECTOR, SPH_DST_READ | SPH_SRC_READ, 0.0),
+    SPH_PROP("grad_rho", "kg/m^(d+1)", "gradient of the density", SPH_VECTOR,
+             SPH_DST_SUM | SPH_WORK, 0.0),
+    SPH_PROP("grad_p", "J/m^(d+1)", "gradient of the pressure", SPH_VECTOR, SPH_DST_SUM | SPH_WORK,
+             0.0),
+    SPH_PROP("grad_v", "1/s", "velocity gradient, a row a component", SPH_MATRIX,
+             SPH_DST_SUM | SPH_WORK, 0.0),
+    SPH_PROP("moment", "", "moment matrix of the gradients", SPH_MATRIX, SPH_DST_SUM | SPH_WORK,
+             0.0),
+    SPH_PROP("volume", "", "volume correction of the forces", SPH_SCALAR, SPH_DST_SUM | SPH_WORK,
+             0.0),
 };
 
 #define SPH_LOOP sweep
@@ -100,14 +104,14 @@ static sph_status correct(const sph_batch *b)
 }
 
 static const sph_item item = {
-    SIZE(sph_item),
-    SPH_ALL_DIMS,
-    "gsph-gradients",
-    "gradients of density, pressure and velocity for the reconstruction",
-    "exact for linear fields by matrix inversion, as Garcia-Senz et al. 2012, "
-    "doi:10.1051/0004-6361/201117939, eq. 5-7",
-    SPH_LIST(params),
-    SPH_LIST(props),
+    .size = SIZE(sph_item),
+    .dims = SPH_ALL_DIMS,
+    .name = "gsph-gradients",
+    .doc = "gradients of density, pressure and velocity for the reconstruction",
+    .source = "exact for linear fields by matrix inversion, as Garcia-Senz et al. 2012, "
+              "doi:10.1051/0004-6361/201117939, eq. 5-7",
+    .params = SPH_LIST(params),
+    .props = SPH_LIST(props),
 };
 
 const sph_function gsph_gradients = {

@@ -4,23 +4,32 @@
 #define DOC "Godunov SPH: pair fluxes from Riemann problems, second order in smooth flow"
 
 static const sph_step steps[] = {
-    {SPH_AT_EVALUATE, SPH_KIND_FUNCTION, "gsph-density"},
-    {SPH_AT_EVALUATE, SPH_KIND_EOS, ""},
-    {SPH_AT_EVALUATE, SPH_KIND_FUNCTION, "gsph-gradients"},
-    {SPH_AT_EVALUATE, SPH_KIND_FUNCTION, "gsph-rates"},
+    SPH_STEP(SPH_AT_EVALUATE, "gsph-density"),
+    SPH_STEP_EOS(SPH_AT_EVALUATE),
+    SPH_STEP(SPH_AT_EVALUATE, "gsph-gradients"),
+    SPH_STEP(SPH_AT_EVALUATE, "gsph-rates"),
 };
 
 static const sph_rate rates[] = {
-    {"x", "v", SPH_DRIFT, 0},
+    SPH_RATE("x", "v", SPH_DRIFT),
 };
 
 static const sph_item item = {
-    SIZE(sph_item), SPH_ALL_DIMS, "gsph", DOC, "Inutsuka 2002, doi:10.1006/jcph.2002.7053",
-    SPH_NO_LIST,    SPH_NO_LIST,
+    .size = SIZE(sph_item),
+    .dims = SPH_ALL_DIMS,
+    .name = "gsph",
+    .doc = DOC,
+    .source = "Inutsuka 2002, doi:10.1006/jcph.2002.7053",
 };
 
 static const sph_scheme scheme = {
-    SIZE(sph_scheme), 0, &item, "wendland-c4", "kdk", 0.3, SPH_LIST(steps), SPH_LIST(rates),
+    .size = SIZE(sph_scheme),
+    .item = &item,
+    .kernel = "wendland-c4",
+    .integrator = "kdk",
+    .cfl = 0.3,
+    .steps = SPH_LIST(steps),
+    .rates = SPH_LIST(rates),
 };
 
 static sph_status init(const sph_host *host)

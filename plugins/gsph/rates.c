@@ -8,33 +8,37 @@ enum { M, RHO, P, CS, V, VOLUME, GRHO, GP, GV, FORCE, POWER, FASTEST, A, DU, U, 
 enum { RIEMANN, LIMITER, BETA };
 
 static const sph_param params[] = {
-    {"riemann", "", "Riemann solver", 1.0, 1.0, 0.0, "exact|hllc"},
-    {"limiter", "", "slope limiter; none: first order", 1.0, 1.0, 0.0, "none|minmod|van-leer"},
-    {"beta", "", "weight of the closing speed in the signal speed that bounds the time step", 1.0,
-     0.0, 10.0, NULL},
+    SPH_PARAM_CHOICE("riemann", "Riemann solver", 1.0, "exact|hllc"),
+    SPH_PARAM_CHOICE("limiter", "slope limiter; none: first order", 1.0, "none|minmod|van-leer"),
+    SPH_PARAM("beta", "",
+              "weight of the closing speed in the signal speed that bounds the time step", 1.0, 0.0,
+              10.0),
 };
 
 static const sph_prop props[] = {
-    {"m", "kg", "mass", SPH_SCALAR, SPH_SRC_READ, NAN},
-    {"rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN},
-    {"p", "J/m^d", "pressure", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN},
-    {"cs", "m/s", "speed of sound", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN},
-    {"v", "m/s", "velocity", SPH_VECTOR, SPH_DST_READ | SPH_SRC_READ, 0.0},
-    {"volume", "", "volume correction of the forces", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN},
-    {"grad_rho", "kg/m^(d+1)", "gradient of the density", SPH_VECTOR, SPH_DST_READ | SPH_SRC_READ,
-     NAN},
-    {"grad_p", "J/m^(d+1)", "gradient of the pressure", SPH_VECTOR, SPH_DST_READ | SPH_SRC_READ,
-     NAN},
-    {"grad_v", "1/s", "velocity gradient, a row a component", SPH_MATRIX,
-     SPH_DST_READ | SPH_SRC_READ, NAN},
-    {"force", "m/s^2", "sum of the pairs' momentum fluxes", SPH_VECTOR, SPH_DST_SUM | SPH_WORK,
-     0.0},
-    {"power", "W/kg", "sum of the pairs' energy fluxes", SPH_SCALAR, SPH_DST_SUM | SPH_WORK, 0.0},
-    {"signal", "m/s", "largest signal speed", SPH_SCALAR, SPH_DST_MAX | SPH_WORK, 0.0},
-    {"a", "m/s^2", "acceleration", SPH_VECTOR, SPH_DST_UPDATE, 0.0},
-    {"du", "W/kg", "rate of the specific internal energy", SPH_SCALAR, SPH_DST_WRITE, 0.0},
-    {"u", "J/kg", "specific internal energy", SPH_SCALAR, SPH_DST_READ, NAN},
-    {"dt", "s", "time step that the particle allows, before cfl", SPH_SCALAR, SPH_DST_WRITE, 0.0},
+    SPH_PROP("m", "kg", "mass", SPH_SCALAR, SPH_SRC_READ, NAN),
+    SPH_PROP("rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN),
+    SPH_PROP("p", "J/m^d", "pressure", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN),
+    SPH_PROP("cs", "m/s", "speed of sound", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN),
+    SPH_PROP("v", "m/s", "velocity", SPH_VECTOR, SPH_DST_READ | SPH_SRC_READ, 0.0),
+    SPH_PROP("volume", "", "volume correction of the forces", SPH_SCALAR,
+             SPH_DST_READ | SPH_SRC_READ, NAN),
+    SPH_PROP("grad_rho", "kg/m^(d+1)", "gradient of the density", SPH_VECTOR,
+             SPH_DST_READ | SPH_SRC_READ, NAN),
+    SPH_PROP("grad_p", "J/m^(d+1)", "gradient of the pressure", SPH_VECTOR,
+             SPH_DST_READ | SPH_SRC_READ, NAN),
+    SPH_PROP("grad_v", "1/s", "velocity gradient, a row a component", SPH_MATRIX,
+             SPH_DST_READ | SPH_SRC_READ, NAN),
+    SPH_PROP("force", "m/s^2", "sum of the pairs' momentum fluxes", SPH_VECTOR,
+             SPH_DST_SUM | SPH_WORK, 0.0),
+    SPH_PROP("power", "W/kg", "sum of the pairs' energy fluxes", SPH_SCALAR, SPH_DST_SUM | SPH_WORK,
+             0.0),
+    SPH_PROP("signal", "m/s", "largest signal speed", SPH_SCALAR, SPH_DST_MAX | SPH_WORK, 0.0),
+    SPH_PROP("a", "m/s^2", "acceleration", SPH_VECTOR, SPH_DST_UPDATE, 0.0),
+    SPH_PROP("du", "W/kg", "rate of the specific internal energy", SPH_SCALAR, SPH_DST_WRITE, 0.0),
+    SPH_PROP("u", "J/kg", "specific internal energy", SPH_SCALAR, SPH_DST_READ, NAN),
+    SPH_PROP("dt", "s", "time step that the particle allows, before cfl", SPH_SCALAR, SPH_DST_WRITE,
+             0.0),
 };
 
 /* The limited increment of a quantity from j to i, from its step over the pair and what one side's gradient gives
@@ -91,25 +95,25 @@ static sph_status finish(const sph_batch *b)
 }
 
 static const sph_rate rates[] = {
-    {"v", "a", SPH_KICK, 0},
-    {"u", "du", SPH_KICK, 0},
+    SPH_RATE("v", "a", SPH_KICK),
+    SPH_RATE("u", "du", SPH_KICK),
 };
 
 static const sph_reduction reductions[] = {
-    {"dt", "dt", SPH_REDUCE_MIN, SPH_USE_TIME_STEP},
-    {"internal", "u", SPH_REDUCE_SUM, SPH_USE_INTERNAL},
-    {"rho_max", "rho", SPH_REDUCE_MAX, SPH_USE_NONE},
-    {"u_min", "u", SPH_REDUCE_MIN, SPH_USE_NONE},
+    SPH_REDUCTION("dt", "dt", SPH_REDUCE_MIN, SPH_USE_TIME_STEP),
+    SPH_REDUCTION("internal", "u", SPH_REDUCE_SUM, SPH_USE_INTERNAL),
+    SPH_REDUCTION("rho_max", "rho", SPH_REDUCE_MAX, SPH_USE_NONE),
+    SPH_REDUCTION("u_min", "u", SPH_REDUCE_MIN, SPH_USE_NONE),
 };
 
 static const sph_item item = {
-    SIZE(sph_item),
-    SPH_ALL_DIMS,
-    "gsph-rates",
-    "acceleration and heating from Riemann problems between neighbours",
-    "Inutsuka 2002, doi:10.1006/jcph.2002.7053; README",
-    SPH_LIST(params),
-    SPH_LIST(props),
+    .size = SIZE(sph_item),
+    .dims = SPH_ALL_DIMS,
+    .name = "gsph-rates",
+    .doc = "acceleration and heating from Riemann problems between neighbours",
+    .source = "Inutsuka 2002, doi:10.1006/jcph.2002.7053; README",
+    .params = SPH_LIST(params),
+    .props = SPH_LIST(props),
 };
 
 const sph_function gsph_rates = {

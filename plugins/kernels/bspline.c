@@ -6,37 +6,56 @@
 #define SOURCE "Price 2012, doi:10.1016/j.jcp.2010.12.011, eqs. 6-8"
 
 /* M_n(q) ~ sum_k (-1)^k binomial(n, k) max(0, n/2 - k - q)^(n-1), over the knots above 0 */
-static const sph_kernel_term m4[] = {{1, 2, 3, 0}, {-4, 1, 3, 0}};
-static const sph_kernel_term m5[] = {{1, 2.5, 4, 0}, {-5, 1.5, 4, 0}, {10, .5, 4, 0}};
-static const sph_kernel_term m6[] = {{1, 3, 5, 0}, {-6, 2, 5, 0}, {15, 1, 5, 0}};
+static const sph_kernel_term m4[] = {SPH_KERNEL_TERM(1, 2, 3), SPH_KERNEL_TERM(-4, 1, 3)};
+static const sph_kernel_term m5[] = {SPH_KERNEL_TERM(1, 2.5, 4), SPH_KERNEL_TERM(-5, 1.5, 4),
+                                     SPH_KERNEL_TERM(10, .5, 4)};
+static const sph_kernel_term m6[] = {SPH_KERNEL_TERM(1, 3, 5), SPH_KERNEL_TERM(-6, 2, 5),
+                                     SPH_KERNEL_TERM(15, 1, 5)};
 
 static const sph_item item[N_BSPLINES] = {
-    {(uint32_t)sizeof(sph_item), SPH_ALL_DIMS, "cubic-spline",
-     "B-spline M4, support 2 h; pairs beyond about 55 neighbours in 3D", SOURCE, SPH_NO_LIST,
-     SPH_NO_LIST},
-    {(uint32_t)sizeof(sph_item), SPH_ALL_DIMS, "quartic-spline", "B-spline M5, support 2.5 h",
-     SOURCE, SPH_NO_LIST, SPH_NO_LIST},
-    {(uint32_t)sizeof(sph_item), SPH_ALL_DIMS, "quintic-spline", "B-spline M6, support 3 h", SOURCE,
-     SPH_NO_LIST, SPH_NO_LIST},
+    {
+        .size = (uint32_t)sizeof(sph_item),
+        .dims = SPH_ALL_DIMS,
+        .name = "cubic-spline",
+        .doc = "B-spline M4, support 2 h; pairs beyond about 55 neighbours in 3D",
+        .source = SOURCE,
+    },
+    {
+        .size = (uint32_t)sizeof(sph_item),
+        .dims = SPH_ALL_DIMS,
+        .name = "quartic-spline",
+        .doc = "B-spline M5, support 2.5 h",
+        .source = SOURCE,
+    },
+    {
+        .size = (uint32_t)sizeof(sph_item),
+        .dims = SPH_ALL_DIMS,
+        .name = "quintic-spline",
+        .doc = "B-spline M6, support 3 h",
+        .source = SOURCE,
+    },
 };
 
 const sph_kernel bspline[N_BSPLINES] = {
-    {(uint32_t)sizeof(sph_kernel),
-     0,
-     &item[0],
-     2,
-     {0, 1. / 6, 5 / (14 * PI), 1 / (4 * PI)},
-     {SPH_NO_LIST, SPH_LIST(m4), SPH_LIST(m4), SPH_LIST(m4)}},
-    {(uint32_t)sizeof(sph_kernel),
-     0,
-     &item[1],
-     2.5,
-     {0, 1. / 24, 96 / (1199 * PI), 1 / (20 * PI)},
-     {SPH_NO_LIST, SPH_LIST(m5), SPH_LIST(m5), SPH_LIST(m5)}},
-    {(uint32_t)sizeof(sph_kernel),
-     0,
-     &item[2],
-     3,
-     {0, 1. / 120, 7 / (478 * PI), 1 / (120 * PI)},
-     {SPH_NO_LIST, SPH_LIST(m6), SPH_LIST(m6), SPH_LIST(m6)}},
+    {
+        .size = (uint32_t)sizeof(sph_kernel),
+        .item = &item[0],
+        .support = 2,
+        .norm = {0, 1. / 6, 5 / (14 * PI), 1 / (4 * PI)},
+        .terms = {SPH_NO_LIST, SPH_LIST(m4), SPH_LIST(m4), SPH_LIST(m4)},
+    },
+    {
+        .size = (uint32_t)sizeof(sph_kernel),
+        .item = &item[1],
+        .support = 2.5,
+        .norm = {0, 1. / 24, 96 / (1199 * PI), 1 / (20 * PI)},
+        .terms = {SPH_NO_LIST, SPH_LIST(m5), SPH_LIST(m5), SPH_LIST(m5)},
+    },
+    {
+        .size = (uint32_t)sizeof(sph_kernel),
+        .item = &item[2],
+        .support = 3,
+        .norm = {0, 1. / 120, 7 / (478 * PI), 1 / (120 * PI)},
+        .terms = {SPH_NO_LIST, SPH_LIST(m6), SPH_LIST(m6), SPH_LIST(m6)},
+    },
 };

@@ -31,7 +31,7 @@
 SPH_BEGIN_DECLS
 
 #define SPH_ABI_MAJOR 0u
-#define SPH_ABI_MINOR 1u
+#define SPH_ABI_MINOR 2u
 
 #if defined(__GNUC__)
 #define SPH_EXPORT __attribute__((visibility("default")))
@@ -46,6 +46,11 @@ typedef int32_t sph_status; /* 0 is success, negative an error */
 #define SPH_E_ABI (-3)     /* version or size does not fit */
 #define SPH_E_NOMEM (-4)
 #define SPH_E_NUMERIC (-5) /* NaN, negative density, no convergence */
+
+/* Does the struct of the host's at p, which begins with its size, hold this member? For members that
+ * are younger than the minor version that the plugin asks for: `if (SPH_HAS(batch, member))`. */
+#define SPH_HAS(p, member)                                                                         \
+    ((size_t)((const char *)(&(p)->member + 1) - (const char *)(p)) <= (size_t)(p)->size)
 
 /* A typed list whose element type may grow: element i is at (char *)data + i * stride. */
 typedef struct sph_list {

@@ -38,7 +38,15 @@ typedef struct sph_kernel_form {
     double support; /* in units of h: W = 0 for r >= support h */
     double norm;
     sph_kernel_piece piece[SPH_KERNEL_KNOTS];
+    /* Of a kernel given as a function: its values w and slopes d (per cell) at the ends of n_table
+     * cells of equal width in q, w0 d0 w1 d1 ..., between which a cubic is laid; n_pieces is 0 then.
+     * The host's, for as long as the batch. */
+    const double *table;
+    double cells; /* n_table / support: cells in one h */
+    uint32_t n_table, reserved2;
 } sph_kernel_form;
+
+typedef struct sph_run sph_run; /* opaque: the run that a batch is part of */
 
 typedef struct sph_batch {
     uint32_t size, dim;
@@ -65,6 +73,9 @@ typedef struct sph_batch {
     double time, dt; /* of this evaluation; dt: the step being taken (0 before the first) */
     uint64_t step;
     const sph_host *host;
+    const sph_run
+        *run; /* what the extensions of a run ask for (reductions.h, time_step.h); NULL where
+                         * no run goes on: initial states, exact solutions */
 } sph_batch;
 
 /* Works on a batch. Writes only the declared properties of its own destinations. [worker] */

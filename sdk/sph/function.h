@@ -26,6 +26,11 @@ typedef struct sph_rate {
     uint32_t kind, reserved;
 } sph_rate;
 
+#define SPH_RATE(property, rate, kind)                                                             \
+    {                                                                                              \
+        (property), (rate), (kind), 0u                                                             \
+    }
+
 /* The global minimum, maximum or sum of a property over the particles (no ghosts) after the pass. */
 #define SPH_REDUCE_MIN 1u
 #define SPH_REDUCE_MAX 2u
@@ -39,6 +44,11 @@ typedef struct sph_reduction {
     const char *name, *property;
     uint32_t op, use;
 } sph_reduction;
+
+#define SPH_REDUCTION(name, property, op, use)                                                     \
+    {                                                                                              \
+        (name), (property), (op), (use)                                                            \
+    }
 
 typedef struct sph_function {
     uint32_t size;
@@ -56,6 +66,10 @@ typedef struct sph_function {
     sph_list rates;          /* of sph_rate */
     sph_list reductions;     /* of sph_reduction */
     const char *device_body; /* text of the pair body for a device, or NULL */
+    /* Once for each pass over an array, before all else: the only call that may change the state of
+     * this use. It sees time, dt, step, parameters and reductions but no particles: count is 0, the
+     * columns are NULL. Every rank calls it and must come to the same state. Or NULL. [main] */
+    sph_range_fn prepare;
 } sph_function;
 
 SPH_END_DECLS

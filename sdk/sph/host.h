@@ -22,7 +22,9 @@ struct sph_host {
      * SPH_E_INVALID with a message naming item and field if the descriptor contradicts itself.
      * [main], in init only. */
     sph_status (*register_item)(const sph_host *, const char *kind, const void *descriptor);
-    /* An extension by id, host-owned; NULL: not here. [any] */
+    /* An extension by id, host-owned, for as long as the plugin is loaded; NULL: not here. Each is a
+     * struct of functions that begins with its size: SPH_EXT_... in tables.h, reductions.h,
+     * time_step.h, population.h, state.h. [any] */
     const void *(*extension)(const sph_host *, const char *id);
     /* level: SPH_LOG_...; one line without newline. A plugin never prints itself. [any] */
     void (*log)(const sph_host *, int32_t level, const char *message);

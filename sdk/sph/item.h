@@ -43,7 +43,14 @@ typedef struct sph_param {
     double def;          /* default; NaN: mandatory. For a choice: the index of the default */
     double min, max;     /* inclusive; min > max: unbounded */
     const char *choices; /* "exact|hllc": the value is a word, handed on as its index; else NULL */
+    uint32_t type;       /* SPH_PARAM_NUMBER (default), or SPH_PARAM_TABLE: see tables.h */
+    uint32_t reserved;   /* 0 */
 } sph_param;
+
+#define SPH_PARAM_NUMBER 0u /* a number, a truth value (1, 0) or one of the choices */
+#define SPH_PARAM_TABLE                                                                            \
+    1u /* named columns of numbers, from a file or from the scene; its number is 1 where the scene \
+        * gives one, else 0. def: NaN: mandatory, else 0 */
 
 typedef struct sph_item {
     uint32_t size;
@@ -59,6 +66,27 @@ typedef struct sph_item {
 #define SPH_DIM2 0x4u
 #define SPH_DIM3 0x8u
 #define SPH_ALL_DIMS (SPH_DIM1 | SPH_DIM2 | SPH_DIM3)
+
+/* Elements of static lists. Written with these, a plugin's source stays whole when a later version
+ * appends members: static const sph_prop props[] = {SPH_PROP("rho", "kg/m^d", ...), ...}; */
+#define SPH_PROP(name, unit, doc, type, access, start)                                             \
+    {                                                                                              \
+        (name), (unit), (doc), (type), (access), (start)                                           \
+    }
+#define SPH_PARAM(name, unit, doc, def, min, max)                                                  \
+    {                                                                                              \
+        (name), (unit), (doc), (def), (min), (max), NULL, SPH_PARAM_NUMBER, 0u                     \
+    }
+/* choices: "exact|hllc"; def: the index of the default */
+#define SPH_PARAM_CHOICE(name, doc, def, choices)                                                  \
+    {                                                                                              \
+        (name), "", (doc), (def), 1.0, 0.0, (choices), SPH_PARAM_NUMBER, 0u                        \
+    }
+/* def: 0, or NaN where a scene must give one */
+#define SPH_PARAM_OF_TABLE(name, doc, def)                                                         \
+    {                                                                                              \
+        (name), "", (doc), (def), 1.0, 0.0, NULL, SPH_PARAM_TABLE, 0u                              \
+    }
 
 SPH_END_DECLS
 #endif

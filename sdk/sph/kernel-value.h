@@ -5,10 +5,30 @@
 
 #include <sph/batch.h>
 
+/* Likewise of a table: the cubic between the ends of a cell. */
+static inline double sph_kernel_cubic(const sph_kernel_form *kernel, double q, int slope)
+{
+    const double *p;
+    double cell, t, c2, c3;
+    uint32_t k;
+    if (!(q >= 0.0 && q < kernel->support))
+        return 0.0;
+    cell = q * kernel->cells;
+    k = cell < kernel->n_table - 1 ? (uint32_t)cell : kernel->n_table - 1;
+    p = kernel->table + 2 * (size_t)k;
+    t = cell - k;
+    c2 = 3.0 * (p[2] - p[0]) - 2.0 * p[1] - p[3];
+    c3 = p[1] + p[3] - 2.0 * (p[2] - p[0]);
+    return kernel->norm * (slope ? kernel->cells * (p[1] + t * (2.0 * c2 + 3.0 * c3 * t))
+                                 : p[0] + t * (p[1] + t * (c2 + c3 * t)));
+}
+
 /* One of the two sums of a kernel form, at q = r / h, in units of h^-dim (w) or h^-(dim+1) (dw). */
 static inline double sph_kernel_sum(const sph_kernel_form *kernel, double q, int slope)
 {
     double sum = 0.0;
+    if (kernel->n_table)
+        return sph_kernel_cubic(kernel, q, slope);
     for (uint32_t k = 0; k < kernel->n_pieces; k++) {
         const sph_kernel_piece *p = &kernel->piece[k];
         const double *c = slope ? p->d : p->c;

@@ -24,7 +24,8 @@ typedef long long B __attribute__((vector_size(8 * SPH_WIDTH), aligned(8)));
 
 SPH_INLINE R SPH_OF_ISA(sph_num_)(double a)
 {
-    return (R){0} + a;
+    const R zero = {0};
+    return zero + a;
 }
 
 SPH_INLINE R SPH_OF_ISA(sph_select_)(B m, R a, R b)
@@ -39,7 +40,7 @@ SPH_INLINE R SPH_OF_ISA(sph_load_)(const double *p)
 
 SPH_INLINE R SPH_OF_ISA(sph_sqrt_)(R a)
 {
-    R out;
+    R out = a;
     for (int l = 0; l < SPH_WIDTH; l++)
         out[l] = __builtin_sqrt(a[l]);
     return out;
@@ -48,7 +49,7 @@ SPH_INLINE R SPH_OF_ISA(sph_sqrt_)(R a)
 /* libm lane by lane: right to its own rounding, and slow; for bodies that cannot do without. */
 SPH_INLINE R SPH_OF_ISA(sph_pow_where_)(B m, R a, R b)
 {
-    R out = (R){0} + 1.0;
+    R out = SPH_OF_ISA(sph_num_)(1.0);
     for (int l = 0; l < SPH_WIDTH; l++)
         if (m[l])
             out[l] = __builtin_pow(a[l], b[l]);
@@ -58,7 +59,7 @@ SPH_INLINE R SPH_OF_ISA(sph_pow_where_)(B m, R a, R b)
 SPH_INLINE R SPH_OF_ISA(sph_ipow_)(R a, uint32_t n)
 {
     /* n is at most 15 and the same for every lane: four predictable branches. */
-    R out = (n & 1u) ? a : (R){0} + 1.0;
+    R out = (n & 1u) ? a : SPH_OF_ISA(sph_num_)(1.0);
     a *= a;
     if (n & 2u)
         out *= a;
@@ -73,19 +74,32 @@ SPH_INLINE R SPH_OF_ISA(sph_ipow_)(R a, uint32_t n)
 
 SPH_INLINE R SPH_OF_ISA(sph_sum_of_powers_)(R t, uint32_t power, uint32_t n, const double *c)
 {
-    R sum = (R){0} + c[n - 1];
+    R sum = SPH_OF_ISA(sph_num_)(c[n - 1]);
     for (uint32_t k = n - 1; k-- > 0;)
         sum = sum * t + c[k];
     return sum * SPH_OF_ISA(sph_ipow_)(t, power);
 }
 
+/* A kernel's table, lane by lane (slope: 0 or 1): the slow way, for kernels given as functions. */
+static __attribute__((noinline, unused)) R SPH_OF_ISA(sph_cubic_)(const sph_kernel_form *kernel,
+                                                                  R q, int slope)
+{
+    R out = q;
+    for (int l = 0; l < SPH_WIDTH; l++)
+        out[l] = sph_kernel_cubic(kernel, q[l], slope);
+    return out;
+}
+
 SPH_INLINE R SPH_OF_ISA(sph_w_)(const sph_kernel_form *kernel, R q)
 {
-    R sum = {0};
+    const R zero = {0};
+    R sum = zero;
+    if (__builtin_expect(kernel->n_table != 0, 0))
+        return SPH_OF_ISA(sph_cubic_)(kernel, q, 0);
     for (uint32_t k = 0; k < kernel->n_pieces; k++) {
         const sph_kernel_piece *p = &kernel->piece[k];
         R t = p->knot - q;
-        t = SPH_OF_ISA(sph_select_)((B)(t > (R){0}), t, (R){0});
+        t = SPH_OF_ISA(sph_select_)((B)(t > zero), t, zero);
         sum += SPH_OF_ISA(sph_sum_of_powers_)(t, p->power, p->n_coef, p->c);
     }
     return sum * kernel->norm;
@@ -93,15 +107,18 @@ SPH_INLINE R SPH_OF_ISA(sph_w_)(const sph_kernel_form *kernel, R q)
 
 SPH_INLINE R SPH_OF_ISA(sph_dw_)(const sph_kernel_form *kernel, R q)
 {
-    R sum = {0};
+    const R zero = {0};
+    R sum = zero;
+    if (__builtin_expect(kernel->n_table != 0, 0))
+        return SPH_OF_ISA(sph_cubic_)(kernel, q, 1);
     for (uint32_t k = 0; k < kernel->n_pieces; k++) {
         const sph_kernel_piece *p = &kernel->piece[k];
         R t = p->knot - q;
-        B in = (B)(t > (R){0});
-        t = SPH_OF_ISA(sph_select_)(in, t, (R){0});
+        B in = (B)(t > zero);
+        t = SPH_OF_ISA(sph_select_)(in, t, zero);
         R d = SPH_OF_ISA(sph_sum_of_powers_)(t, p->dpower, p->dn_coef, p->d);
         /* A derivative of power 0 does not vanish by itself past its knot. */
-        sum += SPH_OF_ISA(sph_select_)(in, d, (R){0});
+        sum += SPH_OF_ISA(sph_select_)(in, d, zero);
     }
     return sum * kernel->norm;
 }

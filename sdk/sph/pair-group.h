@@ -56,7 +56,7 @@
 #define SPH_O_MAX(name, k)                                                                         \
     for (int l = 0; l < lanes; l++)                                                                \
         SPH_P(b->dst[k], 0)[i + (uint64_t)l] = fmax(SPH_P(b->dst[k], 0)[i + (uint64_t)l], name[l]);
-#define SPH_PARAM(name, k) const double name = b->param[k];
+#define SPH_PARAM_OF(name, k) const double name = b->param[k];
 
 static sph_status SPH_LOOP_NAME(SPH_ISA)(const sph_batch *b)
 {
@@ -66,7 +66,7 @@ static sph_status SPH_LOOP_NAME(SPH_ISA)(const sph_batch *b)
         x_s[c] = SPH_P(b->x_src, c);
     const double *const h_s = SPH_P(b->h_src, 0);
     SPH_LOOP_J(SPH_S_S, SPH_S_V, SPH_S_M)
-    SPH_LOOP_PARAM(SPH_PARAM)
+    SPH_LOOP_PARAM(SPH_PARAM_OF)
     R lane_number;
     for (int l = 0; l < SPH_WIDTH; l++)
         lane_number[l] = l;
@@ -140,4 +140,4 @@ static sph_status SPH_LOOP_NAME(SPH_ISA)(const sph_batch *b)
 #undef SPH_O_M
 #undef SPH_O_MIN
 #undef SPH_O_MAX
-#undef SPH_PARAM
+#undef SPH_PARAM_OF

@@ -26,6 +26,7 @@
 #include <sph/batch.h>
 #include <sph/function.h>
 #include <sph/item.h>
+#include <sph/kernel-value.h>
 
 #ifndef SPH_LOOP_I
 #define SPH_LOOP_I(S, V, M)

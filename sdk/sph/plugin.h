@@ -9,7 +9,12 @@
 #include <sph/function.h>
 #include <sph/host.h>
 #include <sph/kernel.h>
+#include <sph/population.h>
+#include <sph/reductions.h>
 #include <sph/scheme.h>
+#include <sph/state.h>
+#include <sph/tables.h>
+#include <sph/time_step.h>
 
 SPH_BEGIN_DECLS
 
@@ -28,13 +33,26 @@ typedef struct sph_plugin {
 SPH_EXPORT const sph_plugin *sph_plugin_entry(void);
 typedef const sph_plugin *(*sph_plugin_entry_fn)(void);
 
+/* The minor version that a plugin asks of its host. By default the oldest of this major: a plugin
+ * that is built again with newer headers still loads in older hosts, which see the members they
+ * know and no others. One that cannot do without a newer member defines this to the minor that
+ * brought it, before the include, and is refused by older hosts; one that can asks SPH_HAS (abi.h).
+ * While major is 0 there is no choice. */
+#ifndef SPH_ABI_WANTED_MINOR
+#if SPH_ABI_MAJOR == 0
+#define SPH_ABI_WANTED_MINOR SPH_ABI_MINOR
+#else
+#define SPH_ABI_WANTED_MINOR 0u
+#endif
+#endif
+
 #define SPH_PLUGIN(name, version, license, doc, init, fini)                                        \
     SPH_EXPORT const sph_plugin *sph_plugin_entry(void)                                            \
     {                                                                                              \
         static const sph_plugin plugin = {(uint32_t)sizeof(sph_plugin),                            \
                                           SPH_PLUGIN_MAGIC,                                        \
                                           SPH_ABI_MAJOR,                                           \
-                                          SPH_ABI_MINOR,                                           \
+                                          SPH_ABI_WANTED_MINOR,                                    \
                                           (name),                                                  \
                                           (version),                                               \
                                           (license),                                               \

@@ -62,9 +62,9 @@ static void reset_items(void)
     mock.prop[2] = (sph_prop){"again", "", "", SPH_INT32, SPH_DST_WRITE, 0};
     mock.inverse_prop[0] = (sph_prop){"rho", "", "", SPH_SCALAR, SPH_DST_WRITE, 0};
     mock.inverse_prop[1] = (sph_prop){"p", "", "", SPH_SCALAR, SPH_DST_READ, 0};
-    mock.param[0] = (sph_param){"gamma", "", "", 1.4, 1, 10, NULL};
-    mock.param[1] = (sph_param){"solver", "", "", 1, 0, 0, "exact|hllc"};
-    mock.param[2] = (sph_param){"x0", "m", "must be given", NAN, 1, 0, NULL};
+    mock.param[0] = (sph_param)SPH_PARAM("gamma", "", "", 1.4, 1, 10);
+    mock.param[1] = (sph_param){"solver", "", "", 1, 0, 0, "exact|hllc", 0, 0};
+    mock.param[2] = (sph_param)SPH_PARAM("x0", "m", "must be given", NAN, 1, 0);
     mock.item = (sph_item){sizeof(sph_item),    SPH_ALL_DIMS,      "thing", "a thing", NULL,
                            LIST_OF(mock.param), LIST_OF(mock.prop)};
     mock.plain_item = mock.item;
@@ -79,8 +79,8 @@ void mock_reset(enum kind kind)
     reset_items();
     mock.rate[0] = (sph_rate){"u", "p", SPH_KICK, 0};
     mock.reduction[0] = (sph_reduction){"least", "rho", SPH_REDUCE_MIN, SPH_USE_TIME_STEP};
-    mock.step[0] = (sph_step){SPH_AT_EVALUATE, SPH_KIND_FUNCTION, "thing"};
-    mock.step[1] = (sph_step){SPH_AT_EVALUATE, SPH_KIND_EOS, NULL};
+    mock.step[0] = (sph_step)SPH_STEP(SPH_AT_EVALUATE, "thing");
+    mock.step[1] = (sph_step){SPH_AT_EVALUATE, SPH_KIND_EOS, NULL, NULL, NULL, 0, 0};
     mock.term[0] = (sph_kernel_term){1, 2, 3, 0};
     mock.term[1] = (sph_kernel_term){-4, 1, 3, 0};
     mock.function = (sph_function){.size = sizeof(sph_function),
@@ -95,7 +95,7 @@ void mock_reset(enum kind kind)
                                    .reductions = LIST_OF(mock.reduction)};
     mock.eos = (sph_eos){sizeof(sph_eos),           0, &mock.item, &mock.life, work, work,
                          LIST_OF(mock.inverse_prop)};
-    mock.boundary = (sph_boundary){sizeof(sph_boundary), 0, &mock.item, LIST_OF(mock.step)};
+    mock.boundary = (sph_boundary){sizeof(sph_boundary), 0, &mock.plain_item, LIST_OF(mock.step)};
     mock.kernel = (sph_kernel){
         .size = sizeof(sph_kernel),
         .item = &mock.plain_item,

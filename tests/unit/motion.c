@@ -28,7 +28,7 @@ static sph_status spring_run(const sph_batch *b)
     return SPH_OK;
 }
 
-static const sph_param spring_params[] = {{"damping", "", "", 0, 1, 0, NULL}};
+static const sph_param spring_params[] = {SPH_PARAM("damping", "", "", 0, 1, 0)};
 static const sph_prop spring_props[] = {
     {"x", "", "", SPH_VECTOR, SPH_DST_READ, 0},
     {"v", "", "", SPH_VECTOR, SPH_DST_READ, 0},
@@ -49,8 +49,8 @@ static sph_status bound_run(const sph_batch *b)
     return SPH_OK;
 }
 
-static const sph_param bound_params[] = {{"early", "", "", 0.1, 1, 0, NULL},
-                                         {"late", "", "", 0.1, 1, 0, NULL}};
+static const sph_param bound_params[] = {SPH_PARAM("early", "", "", 0.1, 1, 0),
+                                         SPH_PARAM("late", "", "", 0.1, 1, 0)};
 static const sph_prop bound_props[] = {{"dt", "", "", SPH_SCALAR, SPH_DST_WRITE, 0}};
 static const sph_reduction bound_reductions[] = {{"dt", "dt", SPH_REDUCE_MIN, SPH_USE_TIME_STEP}};
 FUNCTION(bound, "bound", SPH_LIST(bound_params)) = {.size = SIZE(sph_function),
@@ -111,7 +111,7 @@ static sph_status breathe_run(const sph_batch *b)
     return SPH_OK;
 }
 
-static const sph_param breathe_params[] = {{"depth", "", "", 0.05, 1, 0, NULL}};
+static const sph_param breathe_params[] = {SPH_PARAM("depth", "", "", 0.05, 1, 0)};
 static const sph_prop breathe_props[] = {
     {"h", "", "", SPH_SCALAR, SPH_DST_WRITE, NAN},
     {"h0", "", "", SPH_SCALAR, SPH_DST_READ, NAN},
@@ -232,7 +232,7 @@ static sph_status widen_after(const sph_batch *b)
     return SPH_OK;
 }
 
-static const sph_param widen_params[] = {{"enough", "", "", 1, 1, 0, NULL}};
+static const sph_param widen_params[] = {SPH_PARAM("enough", "", "", 1, 1, 0)};
 static const sph_prop widen_props[] = {
     {"h", "", "", SPH_SCALAR, SPH_DST_UPDATE, NAN},
     {"found", "", "", SPH_SCALAR, SPH_DST_SUM, 0},
@@ -251,8 +251,8 @@ FUNCTION(widen, "widen", SPH_LIST(widen_params)) = {.size = SIZE(sph_function),
 /* -- Schemes ------------------------------------------------------------------------------------- */
 
 static const sph_rate rates[] = {{"x", "v", SPH_DRIFT, 0}};
-static const sph_step swing_steps[] = {{SPH_AT_EVALUATE, SPH_KIND_FUNCTION, "spring"}};
-static const sph_step coast_steps[] = {{SPH_AT_EVALUATE, SPH_KIND_FUNCTION, "shade"}};
+static const sph_step swing_steps[] = {SPH_STEP(SPH_AT_EVALUATE, "spring")};
+static const sph_step coast_steps[] = {SPH_STEP(SPH_AT_EVALUATE, "shade")};
 static const sph_item swing_item = {SIZE(sph_item), SPH_ALL_DIMS, "swing", "a mock", "",
                                     SPH_NO_LIST,    SPH_NO_LIST};
 static const sph_item coast_item = {SIZE(sph_item), SPH_ALL_DIMS, "coast", "a mock", "",

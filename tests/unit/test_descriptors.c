@@ -258,10 +258,11 @@ static void plugins(void **state)
     expect("magic number 0x00000001");
     mock_reset(KIND_COUNT);
     mock.plugin.abi_major = 7;
-    expect("built for the plugin ABI 7.1, but this sph has 0.1");
+    expect("built for the plugin ABI 7.");
+    expect("but this sph has 0.");
     mock_reset(KIND_COUNT);
     mock.plugin.abi_minor = 0;
-    expect("built for the plugin ABI 0.0, but this sph has 0.1");
+    expect("built for the plugin ABI 0.0, but this sph has 0.");
     mock_reset(KIND_COUNT);
     mock.plugin.size = 20;
     expect("size of the plugin's descriptor is 20 bytes");

@@ -29,7 +29,7 @@ static sph_status nothing(const sph_batch *b)
     static const sph_item variable##_item = {                                                      \
         SIZE(sph_item), SPH_ALL_DIMS, name, "a mock", "", params, SPH_LIST(variable##_props)}
 
-static const sph_param sum_params[] = {{"alpha", "", "", 1, 0, 10, NULL}};
+static const sph_param sum_params[] = {SPH_PARAM("alpha", "", "", 1, 0, 10)};
 static const sph_prop sum_props[] = {
     {"m", "kg", "", SPH_SCALAR, SPH_SRC_READ, NAN},
     {"rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_SUM, 0},
@@ -42,9 +42,9 @@ static const sph_function sum = {.size = SIZE(sph_function),
                                  .reach = SPH_GATHER,
                                  .reach_scale = 1};
 
-static const sph_param push_params[] = {{"beta", "", "", 2, 1, 0, NULL},
-                                        {"alpha", "", "", 3, 0, 10, NULL},
-                                        {"form", "", "", 0, 1, 0, "even|odd"}};
+static const sph_param push_params[] = {SPH_PARAM("beta", "", "", 2, 1, 0),
+                                        SPH_PARAM("alpha", "", "", 3, 0, 10),
+                                        SPH_PARAM_CHOICE("form", "", 0, "even|odd")};
 static const sph_prop push_props[] = {
     {"rho", "kg/m^d", "", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN},
     {"p", "J/m^d", "", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN},
@@ -124,7 +124,7 @@ static sph_status gas_inverse(const sph_batch *b)
     return SPH_OK;
 }
 
-static const sph_param gas_params[] = {{"k", "", "", 2, 1, 9, NULL}};
+static const sph_param gas_params[] = {SPH_PARAM("k", "", "", 2, 1, 9)};
 static const sph_prop gas_props[] = {
     {"rho", "", "", SPH_SCALAR, SPH_DST_READ, NAN},
     {"u", "J/kg", "energy", SPH_SCALAR, SPH_DST_READ, NAN},
@@ -140,9 +140,9 @@ static const sph_eos gas = {
     SIZE(sph_eos), 0, &gas_item, NULL, gas_run, gas_inverse, SPH_LIST(gas_inverse_props)};
 
 static const sph_step flow_steps[] = {
-    {SPH_AT_START, SPH_KIND_FUNCTION, "mark"},  {SPH_AT_EVALUATE, SPH_KIND_FUNCTION, "sum"},
-    {SPH_AT_EVALUATE, SPH_KIND_EOS, ""},        {SPH_AT_EVALUATE, SPH_KIND_FUNCTION, "push"},
-    {SPH_AT_FINISH, SPH_KIND_FUNCTION, "clip"},
+    SPH_STEP(SPH_AT_START, "mark"),  SPH_STEP(SPH_AT_EVALUATE, "sum"),
+    SPH_STEP_EOS(SPH_AT_EVALUATE),   SPH_STEP(SPH_AT_EVALUATE, "push"),
+    SPH_STEP(SPH_AT_FINISH, "clip"),
 };
 static const sph_rate flow_rates[] = {{"x", "v", SPH_DRIFT, 0}};
 static const sph_item flow_item = {SIZE(sph_item), SPH_ALL_DIMS, "flow", "a mock", "",
@@ -158,8 +158,8 @@ static const sph_scheme flat_flow = {
     SPH_LIST(flow_steps), SPH_NO_LIST};
 
 static const sph_step shore_steps[] = {
-    {SPH_AT_EVALUATE, SPH_KIND_FUNCTION, "clip"},
-    {SPH_AT_START, SPH_KIND_FUNCTION, "mark"},
+    SPH_STEP(SPH_AT_EVALUATE, "clip"),
+    SPH_STEP(SPH_AT_START, "mark"),
 };
 static const sph_item shore_item = {SIZE(sph_item), SPH_ALL_DIMS, "shore", "a mock", "",
                                     SPH_NO_LIST,    SPH_NO_LIST};

@@ -84,7 +84,7 @@ static void test_head(void **state)
     assert_true(s.output.every == .1 && s.output.log_steps == 10 && isinf(s.output.log_every));
     assert_true(s.output.picture.wanted && s.output.picture.range && s.output.picture.max == 17);
     assert_string_equal(s.output.picture.map, "magma");
-    assert_int_equal(cJSON_GetArraySize(s.boundaries), 1);
+    assert_int_equal(s.n_boundary, 1);
     scene_free(&s);
     document_free(&d);
 }

@@ -1,0 +1,137 @@
+/* run/population.c -- particles that functions remove and create, done once at the end of a step: what
+ * they wrote in int32 properties is carried out array by array, in the order of the particles, so
+ * that a run repeats itself. */
+#include "run/run.h"
+#include <stdlib.h>
+#include <string.h>
+
+struct change {
+    uint32_t *index; /* [n]: which old particle each new one is or copies */
+    size_t n_kept, n;
+};
+
+static const int32_t *column_of(const struct particles *p, const char *name)
+{
+    return name ? p->column[particles_find(p, name)].data : NULL;
+}
+
+/* The survivors, then the copies, `create` wanted. */
+static int survey(struct change *c, const struct particles *p, const sph_population *d,
+                  struct error *e)
+{
+    const int32_t *remove = column_of(p, d->remove), *create = column_of(p, d->create);
+    uint64_t total = 0;
+    for (size_t i = 0; i < p->n; i++) {
+        if (create && create[i] < 0)
+            return error_set(e, EXIT_RUN, "%s of a particle is %d, less than none", d->create,
+                             create[i]);
+        total += !(remove && remove[i]) + (create ? (uint64_t)create[i] : 0u);
+    }
+    if (total > UINT32_MAX / 2)
+        return error_set(e, EXIT_RUN, "%llu particles are more than an array holds",
+                         (unsigned long long)total);
+    *c = (struct change){.index = malloc((total + 1) * sizeof *c->index)};
+    if (!c->index)
+        return error_memory(e, "the order of particles", total * sizeof *c->index);
+    for (uint32_t i = 0; i < p->n; i++)
+        if (!(remove && remove[i]))
+            c->index[c->n++] = i;
+    c->n_kept = c->n;
+    for (uint32_t i = 0; create && i < p->n; i++)
+        for (int32_t k = 0; k < create[i]; k++)
+            c->index[c->n++] = i;
+    return 0;
+}
+
+/* Ids for life, and 1, 2, ... among the siblings in `create`. */
+static void number(struct plan *plan, struct plan_array *a, const struct change *c,
+                   const sph_population *d)
+{
+    int64_t *id = a->p.column[a->id].data;
+    int32_t *sibling = a->p.column[particles_find(&a->p, d->create)].data;
+    for (size_t i = c->n_kept; i < c->n; i++) {
+        id[i] = plan->next_id++;
+        sibling[i] = i > c->n_kept && c->index[i] == c->index[i - 1] ? sibling[i - 1] + 1 : 1;
+    }
+}
+
+static int call_born(struct run *r, const struct pass *p, const struct change *c,
+                     const sph_population *d, struct error *e)
+{
+    struct particles *particles = &r->plan->array[p->dst.array].p;
+    const uint32_t n = d->born_props.count;
+    sph_column *column = calloc(n + 1, sizeof *column);
+    if (!column)
+        return error_memory(e, "columns", n * sizeof *column);
+    for (uint32_t k = 0; k < n; k++) {
+        const sph_prop *prop = list_at(&d->born_props, k);
+        column[k] = particles_column(particles, particles_find(particles, prop->name));
+    }
+    sph_batch b = {.size = sizeof b,
+                   .dim = (uint32_t)r->plan->dim,
+                   .real = SPH_F64,
+                   .lanes = SPH_LANES,
+                   .first = c->n_kept,
+                   .count = c->n - c->n_kept,
+                   .n_dst = particles->n,
+                   .dst = column,
+                   .n_columns = n,
+                   .n_params = p->use.item->params.count,
+                   .param = p->use.config.value,
+                   .state = p->use.state,
+                   .time = r->time,
+                   .dt = r->dt,
+                   .step = r->step,
+                   .host = &r->plan->registry->host,
+                   .run = &r->hooks};
+    const sph_status status = d->born(&b);
+    free(column);
+    if (status == SPH_OK)
+        return 0;
+    char why[512];
+    registry_reason(r->plan->registry, status, why, sizeof why);
+    return error_set(e, EXIT_RUN, "new particles of %s at step %llu, t = %g: %s", p->name,
+                     (unsigned long long)r->step, r->time, why);
+}
+
+static void reset(struct particles *p, const char *name)
+{
+    if (name)
+        memset(p->column[particles_find(p, name)].data, 0, p->n * sizeof(int32_t));
+}
+
+static int apply(struct run *r, const struct pass *p, const sph_population *d, struct error *e)
+{
+    struct plan_array *a = &r->plan->array[p->dst.array];
+    struct change c = {0};
+    if (survey(&c, &a->p, d, e))
+        return error_prefix(e, "%s at step %llu", p->name, (unsigned long long)r->step);
+    int status = 0;
+    if (c.n != a->p.n || c.n_kept != c.n) {
+        status = particles_gather(&a->p, c.index, c.n, e);
+        if (!status && c.n > c.n_kept) {
+            number(r->plan, a, &c, d);
+            status = d->born ? call_born(r, p, &c, d, e) : 0;
+        }
+        r->cost.created += c.n - c.n_kept;
+        r->lists_made = false;
+        r->lists_suspect = true;
+        if (!status) {
+            reset(&a->p, d->remove);
+            reset(&a->p, d->create);
+        }
+    }
+    free(c.index);
+    return status;
+}
+
+int run_population(struct run *r, struct error *e)
+{
+    for (size_t i = 0; i < r->plan->n_pass; i++) {
+        const struct pass *p = &r->plan->pass[i];
+        if (p->moment == MOMENT_FINISH && p->use.entry && p->use.entry->population &&
+            apply(r, p, p->use.entry->population, e))
+            return -1;
+    }
+    return 0;
+}

@@ -200,6 +200,27 @@ static int bind_sources(struct plan *plan, struct pass *p, const struct step *s,
     return 0;
 }
 
+/* What a function that makes particles needs besides its own columns. */
+static int bind_population(struct plan *plan, const struct pass *p, const struct step *s,
+                           struct error *e)
+{
+    const sph_population *d = p->use.entry->population;
+    struct particles *particles = &plan->array[p->dst.array].p;
+    if (!d)
+        return 0;
+    if (s->moment != MOMENT_FINISH)
+        return document_fail(plan->scene->doc, s->node ? s->node : plan->scene->scheme.node, e,
+                             "%s removes or creates particles, so it stands at \"finish\", not at "
+                             "\"%s\"",
+                             s->name, moment_name[s->moment]);
+    for (uint32_t k = 0; k < d->born_props.count; k++) {
+        const sph_prop *prop = list_at(&d->born_props, k);
+        if (particles_add(particles, prop->name, prop->unit, prop->doc, prop->type, e) < 0)
+            return error_prefix(e, "%s", s->name);
+    }
+    return 0;
+}
+
 static int bind_function(struct plan *plan, const struct step *s, size_t array, struct error *e)
 {
     const struct entry *entry = registry_find(plan->registry, KIND_FUNCTION, s->name);
@@ -221,7 +242,8 @@ static int bind_function(struct plan *plan, const struct step *s, size_t array, 
     p->after = f->after;
     p->reach = f->reach;
     p->max_sweeps = f->max_sweeps;
-    if (bind_columns(plan, &p->dst, array, f->item, DST_ANY, e) || check_operation(plan, p, s, e))
+    if (bind_columns(plan, &p->dst, array, f->item, DST_ANY, e) || check_operation(plan, p, s, e) ||
+        bind_population(plan, p, s, e))
         return -1;
     if (f->max_sweeps)
         p->unfinished = particles_find(&plan->array[array].p, f->unfinished);

@@ -145,6 +145,15 @@ int use_set_all(struct use *u, const struct document *d, const cJSON *members, s
 /* The same of a parameter that is a table; in tables.c. */
 int use_set_table(struct use *u, const struct document *d, const cJSON *member, struct error *e);
 void use_tables_free(struct use_table *t);
+/* The plugin's own state as bytes, of a use that has one (state.c). `bytes` is the caller's to free. */
+struct use_state {
+    void *bytes;
+    uint64_t n;
+    uint32_t format;
+};
+bool use_has_state(const struct use *u);
+int use_save(const struct use *u, struct registry *r, struct use_state *out, struct error *e);
+int use_restore(struct use *u, struct registry *r, const struct use_state *in, struct error *e);
 bool use_declares(const struct use *u, const char *name);
 
 #endif

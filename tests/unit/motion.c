@@ -266,7 +266,8 @@ const struct rig_items motion_items = {
     {&spring, &bound, &measure, &count_up, &breathe, &shade, &gather, &wide, &widen, NULL},
     {NULL},
     {&swing, &coast, NULL},
-    {NULL}};
+    {NULL},
+    NULL};
 
 /* -- The same by hand ---------------------------------------------------------------------------- */
 

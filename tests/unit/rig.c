@@ -27,7 +27,7 @@ static sph_status init(const sph_host *host)
         status = host->register_item(host, SPH_KIND_SCHEME, current->scheme[i]);
     for (size_t i = 0; status == SPH_OK && current->boundary[i]; i++)
         status = host->register_item(host, SPH_KIND_BOUNDARY, current->boundary[i]);
-    return status;
+    return status == SPH_OK && current->more ? current->more(host) : status;
 }
 
 static const sph_plugin *entry(void)

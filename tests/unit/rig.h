@@ -14,6 +14,7 @@ struct rig_items {
     const sph_eos *eos[RIG_MOST];
     const sph_scheme *scheme[RIG_MOST];
     const sph_boundary *boundary[RIG_MOST];
+    sph_status (*more)(const sph_host *); /* called last in init; or NULL */
 };
 
 struct rig {

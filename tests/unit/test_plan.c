@@ -168,7 +168,8 @@ static const sph_boundary shore = {SIZE(sph_boundary), 0, &shore_item, SPH_LIST(
 static const struct rig_items items = {{&sum, &push, &other, &mark, &clip, &flat, NULL},
                                        {&gas, NULL},
                                        {&flow, &flat_flow, NULL},
-                                       {&shore, NULL}};
+                                       {&shore, NULL},
+                                       NULL};
 
 /* -- Scenes -------------------------------------------------------------------------------------- */
 

@@ -69,6 +69,11 @@ for steps, pass_name, column in (
         f"exit code {done.returncode}, says {done.stderr!r}",
     )
 
+# A column that was not asked for is not there.
+done = run("noh-1d.json", "--load", TRESPASS, "--set", edit('{"insert": "trespass-source"}'), "--steps", "3")
+expect("trespass-source", done.returncode == 1 and len(done.stderr.splitlines()) == 1
+       and "trespass-source(fluid) followed a NULL pointer" in done.stderr, done.stderr)
+
 # The keeper alone does nothing wrong; nor is anything of it seen without the audit.
 done = run("noh-1d.json", "--load", TRESPASS, "--set", edit(KEEP), "--steps", "3")
 expect("trespass-keep", done.returncode == 0 and not done.stderr, done.stderr)

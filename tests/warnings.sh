@@ -18,8 +18,8 @@ for compiler in gcc clang; do
     find "$top_srcdir/core" "$top_srcdir/plugins" "$top_srcdir/tests" -name '*.c' | sort |
         while read -r source; do
             case $source in
-            */plugins/*) flags="$PLUGIN_CPPFLAGS -iquote ${source%/*} $PLUGIN_CFLAGS" ;;
-            */tests/*) flags="$CORE_CPPFLAGS $CORE_CFLAGS $CMOCKA_CFLAGS" ;;
+            */plugins/*) flags="$PLUGIN_CPPFLAGS -I${source%/*} $PLUGIN_CFLAGS" ;;
+            */tests/*) flags="$CORE_CPPFLAGS -I${source%/*} $CORE_CFLAGS $CMOCKA_CFLAGS" ;;
             *) flags="$CORE_CPPFLAGS $CORE_CFLAGS" ;;
             esac
             eval "$compiler $flags -Werror -c -o $scratch/object.o $source" >>"$scratch/$compiler" 2>&1 ||

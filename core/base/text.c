@@ -174,3 +174,14 @@ size_t text_invalid_utf8(const char *s, size_t n)
     }
     return (size_t)-1;
 }
+
+void text_one_line(char *s)
+{
+    size_t bad;
+
+    while ((bad = text_invalid_utf8(s, strlen(s))) != (size_t)-1)
+        s[bad] = '?';
+    for (; *s; s++)
+        if ((unsigned char)*s < 0x20 || *s == 0x7f)
+            *s = '?';
+}

@@ -16,6 +16,9 @@ const char *text_suggest(char *out, size_t size, const char *word, const char *c
 /* printf into fresh memory (free it); NULL when out of memory. */
 char *text_format(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
+/* Replaces what is no printable text, line breaks among it, by question marks. */
+void text_one_line(char *s);
+
 /* Offset of the first byte that is not valid UTF-8, or (size_t)-1. */
 size_t text_invalid_utf8(const char *s, size_t n);
 

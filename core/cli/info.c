@@ -12,20 +12,49 @@
 #include <string.h>
 
 struct arguments {
-    const char *what;
+    const char *what, *exists, *least;
     const char **load;
     size_t n_load;
-    bool json, build, devices;
+    bool json, build, devices, extensions;
 };
 
-enum { KEY_LOAD = 0x100, KEY_JSON, KEY_BUILD, KEY_DEVICES };
+enum {
+    KEY_LOAD = 'l',
+    KEY_JSON = 'j',
+    KEY_BUILD = 0x100,
+    KEY_DEVICES,
+    KEY_EXTENSIONS,
+    KEY_EXISTS,
+    KEY_ATLEAST
+};
 static const struct argp_option options[] = {
     {"load", KEY_LOAD, "PLUGIN", 0, "load this one too (name or path; may be repeated)", 0},
     {"json", KEY_JSON, NULL, 0, "as one JSON object", 0},
+    {"exists", KEY_EXISTS, "ID", 0, "print nothing; exit status 0 if ID is there, 1 if not", 0},
+    {"atleast", KEY_ATLEAST, "VERSION", 0, "... and of that version or later (with --exists)", 0},
+    {"extensions", KEY_EXTENSIONS, NULL, 0, "what plugins may ask this sph for, by id, instead", 0},
     {"build", KEY_BUILD, NULL, 0, "versions of what is built in, instead", 0},
     {"devices", KEY_DEVICES, NULL, 0, "the OpenCL devices, instead", 0},
     {0},
 };
+
+/* What cannot be meant. */
+static void check(const struct arguments *a, struct argp_state *state)
+{
+    if (a->least && !a->exists)
+        argp_error(state, "--atleast goes with --exists");
+    if (a->least && !info_is_version(a->least))
+        argp_error(state, "--atleast: \"%s\" is no version: numbers with dots between", a->least);
+    if (a->exists && (a->what || a->json || a->build || a->devices || a->extensions))
+        argp_error(state,
+                   "--exists answers with its exit status, and nothing else can be asked with it");
+    if (a->exists && (a->exists[0] == '\0' || info_is_path(a->exists)))
+        argp_error(
+            state,
+            "--exists: \"%s\" is neither a name nor KIND/NAME with a kind of: plugin, function, "
+            "eos, boundary, kernel, scheme, exact",
+            a->exists);
+}
 
 static error_t parse(int key, char *value, struct argp_state *state)
 {
@@ -41,13 +70,25 @@ static error_t parse(int key, char *value, struct argp_state *state)
     case KEY_BUILD:
         a->build = true;
         return 0;
+    case KEY_EXTENSIONS:
+        a->extensions = true;
+        return 0;
     case KEY_DEVICES:
         a->devices = true;
+        return 0;
+    case KEY_EXISTS:
+        a->exists = value;
+        return 0;
+    case KEY_ATLEAST:
+        a->least = value;
         return 0;
     case ARGP_KEY_ARG:
         if (a->what)
             argp_error(state, "one plugin or item at a time, not also \"%s\"", value);
         a->what = value;
+        return 0;
+    case ARGP_KEY_END:
+        check(a, state);
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -57,10 +98,11 @@ static error_t parse(int key, char *value, struct argp_state *state)
 static const struct argp argp = {
     options,
     parse,
-    "[PLUGIN|ITEM]",
-    "What the plugins offer, by kind; of one plugin or item: all that it declares."
-    "\vLists the plugins in SPH_PLUGIN_PATH, the user's and the system's folder, and those given "
-    "with --load.",
+    "[ID]",
+    "What the plugins offer, by kind; with an ID: all that one plugin or item declares."
+    "\vAn ID is the name or the file of a plugin, or the name of an item; KIND/NAME tells apart what "
+    "shares a name, where KIND is plugin, function, eos, boundary, kernel, scheme or exact. "
+    "Plugins are looked for in SPH_PLUGIN_PATH, the user's and the system's folder, and --load.",
     NULL,
     NULL,
     NULL,
@@ -78,39 +120,9 @@ static int load(struct registry *r, const struct arguments *a, struct error *e)
         if (loader_load(r, a->load[i], e))
             return -1;
     /* A file may be asked after without --load. */
-    if (a->what && strchr(a->what, '/'))
+    if (a->what && info_is_path(a->what))
         return loader_load(r, a->what, e);
     return loader_load_all(r, tell_refused, NULL, e);
-}
-
-static int unknown(const struct registry *r, const char *what, struct error *e)
-{
-    const size_t n = r->n_entry + r->n_plugin;
-    const char **known = malloc((n + 1) * sizeof(*known));
-    char hint[512];
-
-    if (!known)
-        return error_memory(e, "names", n * sizeof(*known));
-    for (size_t i = 0; i < r->n_entry; i++)
-        known[i] = r->entry[i].item->name;
-    for (size_t i = 0; i < r->n_plugin; i++)
-        known[r->n_entry + i] = r->plugin[i].name;
-    if (n == 0)
-        error_set(e, EXIT_USAGE, "no plugin or item \"%s\": no plugin was found", what);
-    else
-        error_set(e, EXIT_USAGE, "no plugin or item \"%s\"%s", what,
-                  text_suggest(hint, sizeof(hint), what, known, n));
-    free(known);
-    return -1;
-}
-
-/* "eos.so" and "/a/b/eos.so" mean the plugin of that file. */
-static bool is_plugin(const struct plugin *p, const char *what)
-{
-    const char *base = strrchr(what, '/') ? strrchr(what, '/') + 1 : what;
-    const char *own = strrchr(p->path, '/') ? strrchr(p->path, '/') + 1 : p->path;
-
-    return strcmp(p->name, what) == 0 || strcmp(own, base) == 0;
 }
 
 /* Everything, or the plugins and items of that name. */
@@ -123,33 +135,42 @@ static int choose(const struct registry *r, const char *what, struct info_choice
         return error_memory(e, "a list", (r->n_entry + 1) * sizeof(*c->entry));
     c->detail = what != NULL;
     for (size_t i = 0; i < r->n_plugin; i++)
-        if (!what || is_plugin(&r->plugin[i], what))
+        if (!what || info_names_plugin(&r->plugin[i], what))
             c->plugin[c->n_plugin++] = i;
     for (size_t i = 0; i < r->n_entry; i++) {
         const struct entry *x = &r->entry[i];
-        if (!what || strcmp(x->item->name, what) == 0 || is_plugin(&r->plugin[x->plugin], what))
+        if (!what || info_names_entry(x, what) || info_names_plugin(&r->plugin[x->plugin], what))
             c->entry[c->n_entry++] = i;
     }
-    return c->n_entry + c->n_plugin > 0 || !what ? 0 : unknown(r, what, e);
+    return c->n_entry + c->n_plugin > 0 || !what ? 0 : info_unknown(r, what, e);
 }
 
-static int show(const struct arguments *a, struct error *e)
+static int print(const struct registry *r, const struct arguments *a, struct error *e)
+{
+    struct info_choice c = {0};
+    int status = choose(r, a->what, &c, e);
+
+    if (!status && a->json)
+        status = info_json(r, &c, e);
+    else if (!status)
+        info_text(r, &c);
+    free(c.entry);
+    free(c.plugin);
+    return status;
+}
+
+static int show(const struct arguments *a, bool *absent, struct error *e)
 {
     struct registry r;
-    struct info_choice c = {0};
-    int status = -1;
+    int status;
 
     if (registry_init(&r, e))
         return -1;
-    if (!load(&r, a, e) && !choose(&r, a->what, &c, e)) {
-        status = 0;
-        if (a->json)
-            status = info_json(&r, &c, e);
-        else
-            info_text(&r, &c);
-    }
-    free(c.entry);
-    free(c.plugin);
+    status = load(&r, a, e);
+    if (!status && a->exists)
+        *absent = !info_exists(&r, a->exists, a->least);
+    else if (!status)
+        status = print(&r, a, e);
     registry_fini(&r);
     return status;
 }
@@ -158,6 +179,7 @@ int cli_info(int argc, char **argv)
 {
     struct arguments a = {0};
     struct error e = {0};
+    bool absent = false;
     int status = 0;
     error_t wrong;
 
@@ -170,12 +192,14 @@ int cli_info(int argc, char **argv)
     wrong = argp_parse(&argp, argc, argv, 0, NULL, &a);
     if (wrong)
         status = error_set(&e, EXIT_USAGE, "the arguments are wrong: %s", strerror(wrong));
+    if (!status && a.extensions)
+        info_extensions();
     if (!status && a.build)
         info_build();
     if (!status && a.devices)
         status = info_devices(&e);
-    if (!status && !a.build && !a.devices)
-        status = show(&a, &e);
+    if (!status && !a.extensions && !a.build && !a.devices)
+        status = show(&a, &absent, &e);
     free(a.load);
-    return status ? cli_error(&e) : EXIT_DONE;
+    return status ? cli_error(&e) : absent ? EXIT_RUN : EXIT_DONE;
 }

@@ -1,7 +1,9 @@
-/* cli/info_json.c -- `sph info --json`: one object with "abi", "plugins" and "items" on stdout. */
+/* cli/info_json.c -- `sph info --json`: one object with "abi", "extensions", "plugins" and
+ * "items" on stdout. */
 #include "config.h"
 
 #include "cli/info.h"
+#include "registry/extension.h"
 
 #include <cjson/cJSON.h>
 #include <math.h>
@@ -51,6 +53,14 @@ static void param_json(cJSON *array, const sph_param *p)
     cJSON_AddStringToObject(o, "name", p->name);
     cJSON_AddStringToObject(o, "unit", p->unit);
     cJSON_AddStringToObject(o, "doc", p->doc);
+    cJSON_AddStringToObject(o, "type",
+                            p->type == SPH_PARAM_TABLE ? "table"
+                            : p->choices               ? "word"
+                                                       : "number");
+    if (p->type == SPH_PARAM_TABLE) {
+        cJSON_AddBoolToObject(o, "mandatory", isnan(p->def));
+        return;
+    }
     if (!p->choices) {
         number(o, "default", p->def);
         number(o, "min", p->min <= p->max ? p->min : NAN);
@@ -123,6 +133,12 @@ static void steps_json(cJSON *object, const sph_list *steps)
         cJSON_AddStringToObject(o, "kind", kind_label[eos ? KIND_EOS : KIND_FUNCTION]);
         if (!eos)
             cJSON_AddStringToObject(o, "name", s[i].name);
+        if (s[i].after)
+            cJSON_AddStringToObject(o, "after", s[i].after);
+        if (s[i].before)
+            cJSON_AddStringToObject(o, "before", s[i].before);
+        if (s[i].on == SPH_ON_BOUNDED)
+            cJSON_AddStringToObject(o, "on", "bounded");
     }
 }
 
@@ -137,7 +153,7 @@ static void function_json(cJSON *o, const sph_function *f)
         number(o, "max_sweeps", f->max_sweeps);
     rates_json(o, &f->rates);
     reductions_json(o, &f->reductions);
-    words(o, "backends", f->device_body ? "cpu|opencl" : "cpu", "|");
+    words(o, "backends", f->device ? "cpu|opencl" : "cpu", "|");
 }
 
 static void specific_json(cJSON *o, const struct entry *x)
@@ -151,6 +167,7 @@ static void specific_json(cJSON *o, const struct entry *x)
         break;
     case KIND_KERNEL:
         number(o, "support", entry_kernel(x)->support);
+        cJSON_AddStringToObject(o, "form", entry_kernel(x)->value ? "function" : "terms");
         break;
     case KIND_SCHEME:
         cJSON_AddStringToObject(o, "kernel", entry_scheme(x)->kernel);
@@ -168,15 +185,34 @@ static void specific_json(cJSON *o, const struct entry *x)
     }
 }
 
+/* What the plugin has said through extensions. */
+static void extras_json(cJSON *o, const struct entry *x)
+{
+    const sph_population *p = x->population;
+
+    if (p && p->remove)
+        cJSON_AddStringToObject(o, "remove", p->remove);
+    if (p && p->create)
+        cJSON_AddStringToObject(o, "create", p->create);
+    if (x->state)
+        number(o, "state_format", x->state->format);
+}
+
 static void entry_json(cJSON *array, const struct registry *r, const struct entry *x)
 {
     cJSON *o = element(array);
     const sph_param *p = x->item->params.data;
     cJSON *list;
 
+    char id[96];
+
+    snprintf(id, sizeof(id), "%s/%s", info_kind[x->kind], x->item->name);
     cJSON_AddStringToObject(o, "name", x->item->name);
+    cJSON_AddStringToObject(o, "id", id);
     cJSON_AddStringToObject(o, "kind", kind_label[x->kind]);
     cJSON_AddStringToObject(o, "plugin", r->plugin[x->plugin].name);
+    cJSON_AddStringToObject(o, "version", r->plugin[x->plugin].version);
+    cJSON_AddStringToObject(o, "file", r->plugin[x->plugin].path);
     cJSON_AddStringToObject(o, "doc", x->item->doc);
     cJSON_AddStringToObject(o, "source", x->item->source);
     list = cJSON_AddArrayToObject(o, "dimensions");
@@ -188,6 +224,7 @@ static void entry_json(cJSON *array, const struct registry *r, const struct entr
         param_json(list, &p[i]);
     props_json(o, "properties", &x->item->props);
     specific_json(o, x);
+    extras_json(o, x);
 }
 
 static void plugin_json(cJSON *array, const struct plugin *p)
@@ -214,6 +251,9 @@ int info_json(const struct registry *r, const struct info_choice *c, struct erro
     snprintf(abi, sizeof(abi), "%u.%u", SPH_ABI_MAJOR, SPH_ABI_MINOR);
     cJSON_AddStringToObject(root, "sph", PACKAGE_VERSION);
     cJSON_AddStringToObject(root, "abi", abi);
+    list = cJSON_AddArrayToObject(root, "extensions");
+    for (size_t i = 0; i < n_extension; i++)
+        cJSON_AddItemToArray(list, cJSON_CreateString(extension[i].id));
     list = cJSON_AddArrayToObject(root, "plugins");
     for (size_t i = 0; i < c->n_plugin; i++)
         plugin_json(list, &r->plugin[c->plugin[i]]);

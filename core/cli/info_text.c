@@ -1,5 +1,6 @@
 /* cli/info_text.c -- `sph info` for people: to stdout, at most 80 columns. */
 #include "cli/info.h"
+#include "registry/extension.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -99,8 +100,11 @@ static void param_text(const sph_param *p)
     unit_text(p->unit, unit, sizeof(unit));
     info_default(p, value, sizeof(value));
     range_text(p, range, sizeof(range));
-    snprintf(text, sizeof(text), "%s%s%s%s%s%s%s", value[0] ? "default " : "mandatory", value, unit,
-             range[0] ? ", " : "", range, p->doc[0] ? ": " : "", p->doc);
+    if (p->type == SPH_PARAM_TABLE)
+        snprintf(text, sizeof(text), "%s table: %s", value[0] ? "optional" : "mandatory", p->doc);
+    else
+        snprintf(text, sizeof(text), "%s%s%s%s%s%s%s", value[0] ? "default " : "mandatory", value,
+                 unit, range[0] ? ", " : "", range, p->doc[0] ? ": " : "", p->doc);
     labelled(4, 4 + LABEL, p->name, text);
 }
 
@@ -155,10 +159,17 @@ static void steps_text(const sph_list *steps)
 {
     const sph_step *s = steps->data;
 
-    for (uint32_t i = 0; i < steps->count; i++)
-        field(i == 0 ? "Steps" : "", "%s: %s", s[i].at,
-              strcmp(s[i].kind, SPH_KIND_EOS) == 0 ? "the material's equation of state"
-                                                   : s[i].name);
+    for (uint32_t i = 0; i < steps->count; i++) {
+        const bool eos = strcmp(s[i].kind, SPH_KIND_EOS) == 0;
+        const char *place = s[i].after ? s[i].after : s[i].before;
+        field(i == 0 ? "Steps" : "", "%s: %s%s%s%s", s[i].at,
+              eos ? "the material's equation of state" : s[i].name,
+              s[i].on == SPH_ON_BOUNDED ? ", on what it bounds" : "",
+              !place       ? ""
+              : s[i].after ? ", after "
+                           : ", before ",
+              place ? place : "");
+    }
 }
 
 static void function_text(const sph_function *f)
@@ -172,7 +183,26 @@ static void function_text(const sph_function *f)
         field("Sweeps", "at most %u, while %s is 1 anywhere", f->max_sweeps, f->unfinished);
     rates_text(&f->rates);
     reductions_text(&f->reductions);
-    field("Backends", "cpu%s", f->device_body ? ", opencl" : "");
+    field("Backends", "cpu%s", f->device ? ", opencl" : "");
+}
+
+/* What the plugin has said through extensions. */
+static void extras_text(const struct entry *x)
+{
+    const sph_population *p = x->population;
+
+    if (p && p->remove)
+        field("Removes", "particles where %s is not 0", p->remove);
+    if (p && p->create)
+        field("Creates", "as many particles as %s says", p->create);
+    if (x->state)
+        field("State", "kept in a checkpoint, format %u", x->state->format);
+}
+
+static void kernel_text(const sph_kernel *k)
+{
+    field("Support", "%g h", k->support);
+    field("Form", k->value ? "a function, tabulated" : "a sum of clamped powers");
 }
 
 static void specific_text(const struct entry *x)
@@ -185,7 +215,7 @@ static void specific_text(const struct entry *x)
         props_text("Properties of its inverse", &entry_eos(x)->inverse_props);
         break;
     case KIND_KERNEL:
-        field("Support", "%g h", entry_kernel(x)->support);
+        kernel_text(entry_kernel(x));
         break;
     case KIND_SCHEME:
         field("Kernel", "%s", entry_scheme(x)->kernel);
@@ -202,7 +232,8 @@ static void specific_text(const struct entry *x)
     }
 }
 
-static void entry_text(const struct registry *r, const struct entry *x)
+/* On the page of a plugin its file need not be told again. */
+static void entry_text(const struct registry *r, const struct entry *x, bool with_file)
 {
     const struct plugin *p = &r->plugin[x->plugin];
     char dims[16] = "";
@@ -211,6 +242,8 @@ static void entry_text(const struct registry *r, const struct entry *x)
     printf("%s: %s, of plugin %s %s\n", x->item->name, kind_label[x->kind], p->name, p->version);
     printf("  ");
     wrap(2, 2, x->item->doc);
+    if (with_file)
+        field("File", "%s", p->path);
     if (x->item->source[0])
         field("Source", "%s", x->item->source);
     for (int d = 1; d <= 3; d++)
@@ -220,6 +253,7 @@ static void entry_text(const struct registry *r, const struct entry *x)
     params_text(&x->item->params);
     props_text("Properties", &x->item->props);
     specific_text(x);
+    extras_text(x);
     putchar('\n');
 }
 
@@ -251,6 +285,9 @@ static size_t widest(const struct registry *r, const struct info_choice *c)
 /* A line each, by kind. */
 static void list_text(const struct registry *r, const struct info_choice *c)
 {
+    static const char *const title[KIND_COUNT] = {
+        "Functions", "Equations of state", "Boundary conditions", "Kernels",
+        "Schemes",   "Exact solutions"};
     const size_t indent = widest(r, c) + 4;
 
     for (int kind = 0; kind < KIND_COUNT; kind++) {
@@ -260,8 +297,7 @@ static void list_text(const struct registry *r, const struct info_choice *c)
             if ((int)x->kind != kind)
                 continue;
             if (!any)
-                printf("%c%s%s\n", kind_label[kind][0] - 'a' + 'A', kind_label[kind] + 1,
-                       kind == KIND_EOS ? "" : "s");
+                puts(title[kind]);
             any = true;
             labelled(2, indent, x->item->name, x->item->doc);
         }
@@ -275,6 +311,8 @@ static void list_text(const struct registry *r, const struct info_choice *c)
         printf("%*s%s, ABI %u.%u, %s\n", (int)indent, "", p->version, p->abi_major, p->abi_minor,
                p->path);
     }
+    if (c->n_plugin > 0)
+        puts("\n`sph info NAME' tells all that a plugin or an item declares.");
 }
 
 void info_text(const struct registry *r, const struct info_choice *c)
@@ -286,5 +324,11 @@ void info_text(const struct registry *r, const struct info_choice *c)
     for (size_t i = 0; i < c->n_plugin; i++)
         plugin_text(&r->plugin[c->plugin[i]]);
     for (size_t i = 0; i < c->n_entry; i++)
-        entry_text(r, &r->entry[c->entry[i]]);
+        entry_text(r, &r->entry[c->entry[i]], c->n_plugin == 0);
+}
+
+void info_extensions(void)
+{
+    for (size_t i = 0; i < n_extension; i++)
+        labelled(0, 20, extension[i].id, extension[i].doc);
 }

@@ -22,6 +22,7 @@ static const struct {
     {"plan", "sph plan", cli_plan, "what would be modelled for a scene, and its cost"},
     {"check", "sph check", cli_check, "errors of a scene, by line and column; nothing is run"},
     {"render", "sph render", cli_render, "pictures of snapshots"},
+    {"new-plugin", "sph new-plugin", cli_new_plugin, "a plugin project to begin with"},
 };
 #define N_COMMANDS (sizeof(commands) / sizeof(commands[0]))
 
@@ -40,7 +41,7 @@ static int help(void)
          "\n"
          "Commands:");
     for (size_t i = 0; i < N_COMMANDS; i++)
-        printf("  %-8s %s\n", commands[i].name, commands[i].doc);
+        printf("  %-10s %s\n", commands[i].name, commands[i].doc);
     puts("\n"
          "  -?, --help      this text; `sph COMMAND --help' tells the options of a command\n"
          "  -V, --version   version of the program and of its plugin ABI\n"

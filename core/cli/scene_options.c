@@ -1,5 +1,8 @@
-/* cli/scene_options.c -- a scene from the command line: --load, --set, and the road from file to plan. */
+/* cli/scene_options.c -- a scene from the command line: --load, --set, and the road from file to
+ * plan. */
 #include "cli/scene_options.h"
+#include "domain/ranks.h"
+#include "domain/same_plugins.h"
 
 enum { KEY_LOAD = 'l', KEY_SET = 's' };
 
@@ -40,9 +43,9 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 
 const struct argp scene_argp = {.options = options, .parser = parse};
 
-int loaded_make(struct loaded *l, const struct scene_options *o, bool guarded, struct error *e)
+/* The scene, and all plugins that it and the command line name. */
+static int load(struct loaded *l, const struct scene_options *o, struct error *e)
 {
-    *l = (struct loaded){0};
     if (document_load(&l->doc, o->path, e))
         return -1;
     l->has_doc = true;
@@ -61,6 +64,15 @@ int loaded_make(struct loaded *l, const struct scene_options *o, bool guarded, s
     for (size_t i = 0; i < l->scene.n_plugin; i++)
         if (loader_load(&l->registry, l->scene.plugin[i], e))
             return -1;
+    return 0;
+}
+
+int loaded_make(struct loaded *l, const struct scene_options *o, bool guarded, struct error *e)
+{
+    *l = (struct loaded){0};
+    /* A rank that fails alone must not leave the others waiting. */
+    if (ranks_agree(load(l, o, e), e) || same_plugins(&l->registry, e) || ranks_only_one(e))
+        return -1;
     l->has_plan = true;
     return plan_make(&l->plan, &l->registry, &l->scene, guarded, e);
 }

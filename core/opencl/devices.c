@@ -101,7 +101,33 @@ int opencl_devices(struct opencl_device **out, size_t *n, struct error *e)
     return 0;
 }
 
+void *opencl_device_handle(size_t k)
+{
+    cl_platform_id platform[PLATFORMS_MAX];
+    cl_device_id device[DEVICES_MAX];
+    cl_uint platforms = 0;
+
+    if (clGetPlatformIDs(PLATFORMS_MAX, platform, &platforms) != CL_SUCCESS)
+        return NULL;
+    for (cl_uint i = 0; i < platforms && i < PLATFORMS_MAX; i++) {
+        cl_uint n = 0;
+        if (clGetDeviceIDs(platform[i], CL_DEVICE_TYPE_ALL, DEVICES_MAX, device, &n) != CL_SUCCESS)
+            continue;
+        n = n > DEVICES_MAX ? DEVICES_MAX : n;
+        if (k < n)
+            return device[k];
+        k -= n;
+    }
+    return NULL;
+}
+
 #else
+
+void *opencl_device_handle(size_t k)
+{
+    (void)k;
+    return NULL;
+}
 
 bool opencl_is_built(void)
 {

@@ -22,4 +22,7 @@ bool opencl_is_built(void);
  * None is no error. */
 int opencl_devices(struct opencl_device **out, size_t *n, struct error *e);
 
+/* OpenCL's own handle (a cl_device_id) of device k of that list, or NULL. */
+void *opencl_device_handle(size_t k);
+
 #endif

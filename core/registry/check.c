@@ -134,7 +134,8 @@ static int check_function(const sph_function *f, struct error *e)
                          REACH_MAX);
     if (f->shape == SPH_POINT && check_no_sources(&f->item->props, "a point function", e))
         return -1;
-    if (check_sweeps(f, e) || check_rates(&f->rates, &f->item->props, e))
+    if (check_sweeps(f, e) || (f->device && check_device_body(f, e)) ||
+        check_rates(&f->rates, &f->item->props, e))
         return -1;
     return check_reductions(&f->reductions, &f->item->props, e);
 }

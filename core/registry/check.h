@@ -26,6 +26,9 @@ int check_props(const sph_list *props, const char *list, struct error *e);
 /* The property of that name in a list of sph_prop, or NULL. */
 const sph_prop *check_find_prop(const sph_list *props, const char *name);
 
+/* The body for a device of a function that has one, in check_device.c. */
+int check_device_body(const sph_function *f, struct error *e);
+
 /* Knots, powers, support and integral, in check_kernel.c. */
 int check_kernel(const sph_kernel *k, struct error *e);
 

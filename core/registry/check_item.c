@@ -5,6 +5,7 @@
 #include "registry/check.h"
 
 #include "base/text.h"
+#include "registry/reach.h"
 #include <math.h>
 #include <string.h>
 
@@ -27,7 +28,7 @@ bool check_is_name(const char *s)
 {
     size_t n;
 
-    if (!s || !is_lower(s[0]))
+    if (!reach_text(s, CHECK_NAME_MAX + 1) || !is_lower(s[0]))
         return false;
     for (n = 1; n <= CHECK_NAME_MAX && s[n]; n++)
         if (!is_lower(s[n]) && !is_digit(s[n]) && s[n] != '-')
@@ -39,7 +40,7 @@ bool check_is_word(const char *s, bool dash)
 {
     size_t n;
 
-    if (!s || !is_letter(s[0]))
+    if (!reach_text(s, CHECK_NAME_MAX + 1) || !is_letter(s[0]))
         return false;
     for (n = 1; n <= CHECK_NAME_MAX && s[n]; n++)
         if (!is_letter(s[n]) && !is_digit(s[n]) && s[n] != '_' && !(dash && s[n] == '-'))
@@ -49,7 +50,8 @@ bool check_is_word(const char *s, bool dash)
 
 bool check_is_text(const char *s)
 {
-    size_t n = s ? strnlen(s, CHECK_TEXT_MAX + 1) : CHECK_TEXT_MAX + 1;
+    const bool there = reach_text(s, CHECK_TEXT_MAX + 1);
+    const size_t n = there ? strnlen(s, CHECK_TEXT_MAX + 1) : CHECK_TEXT_MAX + 1;
 
     if (n > CHECK_TEXT_MAX || text_invalid_utf8(s, n) != (size_t)-1)
         return false;

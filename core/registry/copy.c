@@ -2,6 +2,9 @@
  * comes from a plugin is read with memcpy: its structs may be smaller than ours, or not aligned. */
 #include "registry/copy.h"
 
+#include "registry/check.h"
+#include "registry/reach.h"
+
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
@@ -15,6 +18,8 @@ static const size_t first_rate = UP_TO(sph_rate, reserved);
 static const size_t first_reduction = UP_TO(sph_reduction, use);
 static const size_t first_step = UP_TO(sph_step, name);
 static const size_t first_term = UP_TO(sph_kernel_term, reserved);
+static const size_t first_value = UP_TO(sph_device_value, type);
+static const size_t first_device = UP_TO(sph_device_body, param);
 static const size_t first_item = UP_TO(sph_item, props);
 static const size_t first_life = UP_TO(sph_life, destroy);
 static const size_t first_population = UP_TO(sph_population, born_props);
@@ -23,7 +28,7 @@ static const size_t first_state = UP_TO(sph_state, restore);
 static const struct {
     size_t host, first;
 } size_of[KIND_COUNT] = {
-    [KIND_FUNCTION] = {sizeof(sph_function), UP_TO(sph_function, device_body)},
+    [KIND_FUNCTION] = {sizeof(sph_function), UP_TO(sph_function, device)},
     [KIND_EOS] = {sizeof(sph_eos), UP_TO(sph_eos, inverse_props)},
     [KIND_BOUNDARY] = {sizeof(sph_boundary), UP_TO(sph_boundary, steps)},
     [KIND_KERNEL] = {sizeof(sph_kernel), UP_TO(sph_kernel, terms)},
@@ -67,6 +72,8 @@ int copy_struct(void *out, size_t host, const void *in, size_t first, const char
     uint32_t size;
     uint32_t today = (uint32_t)host;
 
+    if (!reach_bytes(in, sizeof(size)))
+        return error_set(e, EXIT_REFUSED, "pointer to the %s is %p, where nothing is", what, in);
     memcpy(&size, in, sizeof(size));
     if (size < first)
         return error_set(e, EXIT_REFUSED,
@@ -75,6 +82,9 @@ int copy_struct(void *out, size_t host, const void *in, size_t first, const char
     if (size > COPY_LARGEST)
         return error_set(e, EXIT_REFUSED, "size of the %s is %u bytes, which is absurd (limit %u)",
                          what, size, COPY_LARGEST);
+    if (!reach_bytes(in, size < host ? size : host))
+        return error_set(e, EXIT_REFUSED, "size of the %s is %u bytes, but there are fewer", what,
+                         size);
     memset(out, 0, host);
     memcpy(out, in, size < host ? size : host);
     memcpy(out, &today, sizeof(today));
@@ -103,6 +113,10 @@ static int copy_list(void **memory, sph_list *list, size_t host, size_t first, c
                          "list of %s has a stride of %u bytes, but an element's first version had "
                          "%zu",
                          what, in.stride, first);
+    if (!reach_bytes(in.data, (size_t)(in.count - 1) * in.stride + part))
+        return error_set(e, EXIT_REFUSED,
+                         "list of %s says %u elements at %p, where there are not so many", what,
+                         in.count, in.data);
     out = take(memory, in.count * host, e);
     if (!out)
         return -1;
@@ -178,9 +192,34 @@ static int copy_steps(void **memory, sph_list *list, struct error *e)
     return copy_list(memory, list, sizeof(sph_step), first_step, "steps", e);
 }
 
+static int copy_values(void **memory, sph_list *list, const char *what, struct error *e)
+{
+    return copy_list(memory, list, sizeof(sph_device_value), first_value, what, e);
+}
+
+static int copy_device(void **memory, const sph_device_body **device, struct error *e)
+{
+    sph_device_body *out;
+
+    if (!*device)
+        return 0;
+    out = take(memory, sizeof(*out), e);
+    if (!out || copy_struct(out, sizeof(*out), *device, first_device, "device body", e) ||
+        copy_values(memory, &out->i, "i of the device body", e) ||
+        copy_values(memory, &out->j, "j of the device body", e) ||
+        copy_values(memory, &out->sum, "sum of the device body", e) ||
+        copy_values(memory, &out->min, "min of the device body", e) ||
+        copy_values(memory, &out->max, "max of the device body", e) ||
+        copy_values(memory, &out->param, "param of the device body", e))
+        return -1;
+    *device = out;
+    return 0;
+}
+
 static int copy_function(void **memory, sph_function *f, struct error *e)
 {
-    if (copy_life(memory, &f->life, e) || copy_rates(memory, &f->rates, e))
+    if (copy_life(memory, &f->life, e) || copy_device(memory, &f->device, e) ||
+        copy_rates(memory, &f->rates, e))
         return -1;
     /* Left out, that is zero, it is its default. */
     if (f->reach_scale == 0)
@@ -290,7 +329,7 @@ const void *copy_descriptor(enum kind kind, const void *descriptor, void **memor
         return NULL;
     if (copy_rest(kind, memory, out, e)) {
         /* The name is there, if only for the sentence. */
-        if ((*item)->name && memchr((*item)->name, '\0', 64))
+        if (check_is_name((*item)->name))
             error_prefix(e, "\"%s\"", (*item)->name);
         return NULL;
     }

@@ -1,24 +1,19 @@
-/* registry/loader.c -- finds plugins and loads them (see loader.h). The one file that maps code into
- * the program: what it loads has passed registry/preflight.h, and what it keeps registry_add. */
+/* registry/loader.c -- finds plugins and loads them (see loader.h): the way to a file is looked
+ * at by registry/trust.h, the file by registry/preflight.h, what it registers by registry_add. */
 #include "config.h"
 
 #include "registry/loader.h"
 
 #include "base/text.h"
-#include "registry/fpmode.h"
-#include "registry/preflight.h"
+#include "registry/module.h"
+#include "registry/trust.h"
 
 #include <dirent.h>
-#include <dlfcn.h>
-#include <errno.h>
-#include <ltdl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
-#define ENTRY "sph_plugin_entry"
 #define SUFFIX ".so"
 
 static bool has_suffix(const char *name)
@@ -30,91 +25,6 @@ static bool has_suffix(const char *name)
 
 /* -- One file -------- */
 
-static void close_module(void *handle)
-{
-    lt_dlclose((lt_dlhandle)handle);
-    lt_dlexit();
-}
-
-/* The linker's own words, without the file's name, which the sentence has. */
-static int linker_failed(const char *path, struct error *e)
-{
-    const char *why = dlerror();
-    const size_t n = strlen(path);
-
-    if (why && strncmp(why, path, n) == 0 && why[n] == ':')
-        why += n + 1 + (why[n + 1] == ' ');
-    return error_set(e, EXIT_REFUSED, "it cannot be linked: %s", why ? why : "no reason given");
-}
-
-/* Opens a module whose path is absolute, so that libltdl searches nothing. dlopen goes first:
- * libltdl says "file not found" whatever is wrong, and binds lazily, so that a missing symbol would
- * end the program at its first call. */
-static lt_dlhandle open_module(const char *path, struct error *e)
-{
-    void *probe = dlopen(path, RTLD_NOW | RTLD_LOCAL);
-    lt_dladvise advise = NULL;
-    lt_dlhandle handle = NULL;
-
-    if (!probe) {
-        linker_failed(path, e);
-        return NULL;
-    }
-    if (lt_dlinit()) {
-        error_set(e, EXIT_RUN, "libltdl does not start: %s", lt_dlerror());
-        dlclose(probe);
-        return NULL;
-    }
-    if (!lt_dladvise_init(&advise) && !lt_dladvise_local(&advise))
-        handle = lt_dlopenadvise(path, advise);
-    if (!handle) {
-        const char *why = lt_dlerror();
-        error_set(e, EXIT_REFUSED, "libltdl does not load it: %s", why ? why : "no reason given");
-        lt_dlexit();
-    }
-    if (advise)
-        lt_dladvise_destroy(&advise);
-    dlclose(probe);
-    return handle;
-}
-
-/* Loads an absolute path and lets it register. The floating point mode is restored in any case. */
-static int load_module(struct registry *r, const char *path, struct error *e)
-{
-    const uint64_t mode = fpmode_get();
-    lt_dlhandle handle = open_module(path, e);
-    sph_plugin_entry_fn entry;
-    void *symbol;
-
-    if (fpmode_get() != mode) {
-        fpmode_set(mode);
-        error_set(e, EXIT_REFUSED,
-                  "loading it changes the floating point mode of the program: "
-                  "link it without -ffast-math");
-        goto fail;
-    }
-    if (!handle)
-        goto fail;
-    symbol = lt_dlsym(handle, ENTRY);
-    if (!symbol) {
-        error_set(e, EXIT_REFUSED, "it has no function " ENTRY ", so is not a plugin of sph");
-        goto fail;
-    }
-    memcpy(&entry, &symbol, sizeof(entry));
-    if (registry_add(r, path, entry, handle, close_module, e)) {
-        fpmode_set(mode);
-        close_module(handle);
-        return -1;
-    }
-    /* Its init may have, too; no harm is done if that is undone. */
-    fpmode_set(mode);
-    return 0;
-fail:
-    if (handle)
-        close_module(handle);
-    return error_prefix(e, "plugin %s", path);
-}
-
 static bool is_loaded(const struct registry *r, const char *path)
 {
     for (size_t i = 0; i < r->n_plugin; i++)
@@ -125,19 +35,28 @@ static bool is_loaded(const struct registry *r, const char *path)
 
 static int load_file(struct registry *r, const char *file, struct error *e)
 {
-    char *path = realpath(file, NULL);
+    char *path = trust_path(file, e);
+    struct module *module = NULL;
     int status = -1;
 
     if (!path)
-        return error_set(e, EXIT_REFUSED, "plugin %s: %s", file, strerror(errno));
+        return error_prefix(e, "plugin %s", file);
     if (is_loaded(r, path))
         status = 0;
-    else if (preflight_file(path, e))
-        error_prefix(e, "plugin %s", path);
     else
-        status = load_module(r, path, e);
+        module = module_open(path, e);
+    if (module) {
+        status = registry_add(r, path, module_entry(module), module, module_close, e);
+        if (status)
+            module_close(module);
+    }
     free(path);
     return status;
+}
+
+int loader_descriptor(const struct plugin *p)
+{
+    return p->handle && p->close == module_close ? module_descriptor(p->handle) : -1;
 }
 
 /* -- By name -------- */

@@ -5,17 +5,23 @@
 
 #include "registry/registry.h"
 
-/* Loads a plugin by path (has a slash, or ends in .so and exists) or by name. Names are looked for
- * in SPH_PLUGIN_PATH (colon-separated), the user's folder ($XDG_DATA_HOME/sph/plugins-0) and the
- * system's (SPH_PLUGINDIR, or relative to the program), each as NAME.so. "NAME.so" with no such
- * file here is taken as the name NAME. SPH_PLUGIN_PATH=:: switches all three off. A plugin that is
- * loaded already is not loaded twice. Refused (EXIT_REFUSED) with one sentence naming the file: not
- * found (with the folders searched and the nearest name), not readable, not ELF, other machine,
- * truncated, a file or folder that others may write to, missing entry, missing symbol (the linker's
- * own words), wrong magic, ABI major.minor (both named), a struct too small or absurdly large,
- * failing init, duplicate names (both files named), contradictory descriptors (item and field
- * named), a changed floating point mode. A refused plugin leaves no entry behind. [main] */
+/* Loads a plugin by path (has a slash, or ends in .so and exists) or by name. Names are looked
+ * for in SPH_PLUGIN_PATH (colon-separated), the user's folder ($XDG_DATA_HOME/sph/plugins-0) and
+ * the system's (SPH_PLUGINDIR, or relative to the program), each as NAME.so. "NAME.so" with no
+ * such file here is taken as the name NAME. SPH_PLUGIN_PATH=:: switches all three off. A plugin
+ * that is loaded already is not loaded twice. Refused (EXIT_REFUSED) with one sentence naming
+ * the file: not found (with the folders searched and the nearest name), not readable, not ELF,
+ * other machine, truncated or damaged, a file, folder or symbolic link that others own or may
+ * write to, missing entry, missing symbol (the linker's own words), wrong magic, ABI major.minor
+ * (both named), a struct too small or absurdly large, failing init, duplicate names (both files
+ * named), contradictory descriptors (item and field named), a changed floating point mode, a
+ * file that was exchanged while it was being loaded. A refused plugin leaves nothing behind,
+ * neither entry nor mapping. [main] */
 int loader_load(struct registry *r, const char *name_or_path, struct error *e);
+
+/* A descriptor of the file that a plugin was loaded from, open for reading as long as the plugin is
+ * loaded; -1: it is from no file. */
+int loader_descriptor(const struct plugin *p);
 
 /* The folders that are searched, in order. Caller frees with loader_folders_free. */
 char **loader_folders(size_t *n);

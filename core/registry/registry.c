@@ -8,6 +8,8 @@
 #include "registry/check.h"
 #include "registry/copy.h"
 #include "registry/extension.h"
+#include "registry/fpmode.h"
+#include "registry/reach.h"
 
 #include <math.h>
 #include <pthread.h>
@@ -33,6 +35,16 @@ static struct registry *registry_of(const sph_host *host)
     return host ? host->context : NULL;
 }
 
+/* A plugin's message, made one line of valid text. */
+static const char *one_line(const char *message, char *out, size_t size)
+{
+    if (!reach_text(message, size - 1))
+        message = "(a message that is not there)";
+    snprintf(out, size, "%.*s", (int)size - 1, message);
+    text_one_line(out);
+    return out;
+}
+
 static void keep(struct registry *r, const char *sentence)
 {
     struct guard *g = r->lock;
@@ -48,9 +60,10 @@ static void keep(struct registry *r, const char *sentence)
 static sph_status host_fail(const sph_host *host, sph_status status, const char *message)
 {
     struct registry *r = registry_of(host);
+    char text[sizeof(r->last.text)];
 
     if (r && message)
-        keep(r, message);
+        keep(r, one_line(message, text, sizeof(text)));
     return status;
 }
 
@@ -64,12 +77,13 @@ static void host_log(const sph_host *host, int32_t level, const char *message)
 {
     static const char *const word[] = {"error: ", "warning: ", "", "debug: "};
     const struct registry *r = registry_of(host);
+    char text[1024];
 
     if (!r || !message || level > r->log_level)
         return;
     if (level < SPH_LOG_ERROR || level > SPH_LOG_DEBUG)
         level = SPH_LOG_INFO;
-    fprintf(stderr, "sph: %s%s\n", word[level], message);
+    fprintf(stderr, "sph: %s%s\n", word[level], one_line(message, text, sizeof(text)));
 }
 
 static double host_param(const sph_config *config, const char *name)
@@ -87,7 +101,7 @@ static double host_param(const sph_config *config, const char *name)
 
 static int find_kind(const char *id)
 {
-    for (int i = 0; id && i < KIND_COUNT; i++)
+    for (int i = 0; check_is_text(id) && i < KIND_COUNT; i++)
         if (strcmp(id, kind_id[i]) == 0)
             return i;
     return -1;
@@ -120,8 +134,9 @@ static int add_item(struct registry *r, enum kind kind, const void *descriptor, 
     name = x.item->name;
     if (!check_is_name(name)) {
         error_set(e, EXIT_REFUSED, "%s: name of the item %s", kind_label[kind],
-                  !name || !name[0] ? "is missing"
-                                    : "is not a word of a-z, 0-9 and - (at most 63 of them)");
+                  !name || (check_is_text(name) && !name[0])
+                      ? "is missing"
+                      : "is not a word of a-z, 0-9 and - (at most 63 of them)");
         goto fail;
     }
     if (check_descriptor(kind, x.descriptor, e)) {
@@ -235,13 +250,21 @@ static void drop_entries(struct registry *r, size_t from)
         copy_free(r->entry[--r->n_entry].memory);
 }
 
+static void run_fini(struct registry *r, const struct plugin *p)
+{
+    const uint64_t mode = fpmode_get();
+
+    if (p->descriptor->fini)
+        p->descriptor->fini(&r->host);
+    fpmode_set(mode);
+}
+
 void registry_fini(struct registry *r)
 {
     drop_entries(r, 0);
     while (r->n_plugin > 0) {
         struct plugin *p = &r->plugin[--r->n_plugin];
-        if (p->descriptor->fini)
-            p->descriptor->fini(&r->host);
+        run_fini(r, p);
         if (p->handle && p->close)
             p->close(p->handle);
         plugin_free(p);
@@ -264,6 +287,9 @@ static int check_border(const sph_plugin *in, struct error *e)
 
     if (!in)
         return error_set(e, EXIT_REFUSED, "its sph_plugin_entry returns NULL");
+    if (!reach_bytes(in, sizeof(head)))
+        return error_set(e, EXIT_REFUSED, "its sph_plugin_entry returns %p, where nothing is",
+                         (const void *)in);
     memcpy(head, in, sizeof(head));
     if (head[1] != SPH_PLUGIN_MAGIC)
         return error_set(e, EXIT_REFUSED,
@@ -276,6 +302,12 @@ static int check_border(const sph_plugin *in, struct error *e)
                          "it was built for the plugin ABI %u.%u, but this sph has %u.%u", head[2],
                          head[3], SPH_ABI_MAJOR, SPH_ABI_MINOR);
     return 0;
+}
+
+/* Of code no more can be asked. */
+static bool is_code(const void *address)
+{
+    return reach_bytes(address, 1);
 }
 
 static int copy_plugin(sph_plugin *out, const sph_plugin *in, struct error *e)
@@ -294,6 +326,10 @@ static int copy_plugin(sph_plugin *out, const sph_plugin *in, struct error *e)
         return error_set(e, EXIT_REFUSED, "doc of the plugin is not one line of UTF-8 text");
     if (!out->init)
         return error_set(e, EXIT_REFUSED, "init of the plugin is NULL");
+    if (!is_code((const void *)(uintptr_t)out->init) ||
+        (out->fini && !is_code((const void *)(uintptr_t)out->fini)))
+        return error_set(e, EXIT_REFUSED, "%s of the plugin is an address where nothing is",
+                         is_code((const void *)(uintptr_t)out->init) ? "fini" : "init");
     return 0;
 }
 
@@ -318,11 +354,23 @@ static int fill_plugin(struct plugin *p, const char *path, const sph_plugin *in,
     return 0;
 }
 
+/* Undoes what the plugin's `what` did to the floating point mode, and refuses the plugin for it:
+ * every other one would compute otherwise. */
+static int restore_mode(uint64_t mode, const char *what, struct error *e)
+{
+    if (fpmode_get() == mode)
+        return 0;
+    fpmode_set(mode);
+    return error_set(e, EXIT_REFUSED, "%s changes the floating point mode of the program", what);
+}
+
 /* Runs init with registering switched on. */
 static int run_init(struct registry *r, const struct plugin *p, struct error *e)
 {
     struct guard *g = r->lock;
+    const uint64_t mode = fpmode_get();
     sph_status status;
+    int changed;
 
     g->loading = p->path;
     g->refused = 0;
@@ -330,18 +378,17 @@ static int run_init(struct registry *r, const struct plugin *p, struct error *e)
     r->last.text[0] = '\0';
     status = p->descriptor->init(&r->host);
     g->loading = NULL;
-    if (g->refused) {
-        /* Also where the plugin went on as if nothing was: half a plugin is none. */
-        if (status == SPH_OK && p->descriptor->fini)
-            p->descriptor->fini(&r->host);
+    changed = restore_mode(mode, "its init", e);
+    if (status == SPH_OK && (g->refused || changed))
+        run_fini(r, p); /* it went on as if nothing was, but half a plugin is none */
+    if (g->refused)
         return error_set(e, EXIT_REFUSED, "%s", g->why.text);
-    }
     if (status != SPH_OK) {
         char reason[512];
         registry_reason(r, status, reason, sizeof(reason));
         return error_set(e, EXIT_REFUSED, "its init failed: %s", reason);
     }
-    return 0;
+    return changed;
 }
 
 static const struct plugin *find_plugin(const struct registry *r, const char *name)
@@ -358,12 +405,15 @@ int registry_add(struct registry *r, const char *path, sph_plugin_entry_fn entry
     const size_t n_entry = r->n_entry;
     struct plugin p = {.handle = handle, .close = close};
     struct plugin *grown = realloc(r->plugin, (r->n_plugin + 1) * sizeof(*grown));
+    const uint64_t mode = fpmode_get();
     const struct plugin *other;
+    const sph_plugin *in;
 
     if (!grown)
         return error_memory(e, "the registry", (r->n_plugin + 1) * sizeof(*grown));
     r->plugin = grown;
-    if (fill_plugin(&p, path, entry(), e))
+    in = entry();
+    if (restore_mode(mode, "its sph_plugin_entry", e) || fill_plugin(&p, path, in, e))
         goto fail;
     other = find_plugin(r, p.name);
     if (other) {

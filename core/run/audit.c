@@ -22,6 +22,9 @@ static struct run *volatile audited;
 /* No bit pattern that arithmetic gives: a NaN with a payload of ours. */
 static const uint64_t mark = 0x7ff4a0d1700dbeefull;
 
+/* An element of a column that is NULL stands below this address; nothing is ever mapped there. */
+#define NULL_REGION ((uintptr_t)1 << 30)
+
 /* What may be done with a column: 0 nothing, 1 read, 2 read and write. */
 static int declared(const struct pass *p, size_t array, int column)
 {
@@ -49,6 +52,16 @@ static void trap(int signal_number, siginfo_t *info, void *context)
         snprintf(line, sizeof line, "sph: audit: %s touched \"%s\" of array \"%s\", which it %s\n",
                  r->audit->pass->name, p->column[c].name, p->name,
                  word[declared(r->audit->pass, a, c)]);
+        ssize_t written = write(STDERR_FILENO, line, strlen(line));
+        (void)written;
+        _exit(EXIT_RUN);
+    }
+    if (r && r->audit->pass && (uintptr_t)info->si_addr < NULL_REGION) {
+        snprintf(
+            line, sizeof line,
+            "sph: audit: %s followed a NULL pointer, such as the sources' column of a property "
+            "that it does not declare with SPH_SRC_READ\n",
+            r->audit->pass->name);
         ssize_t written = write(STDERR_FILENO, line, strlen(line));
         (void)written;
         _exit(EXIT_RUN);

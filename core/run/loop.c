@@ -155,6 +155,8 @@ static int choose_dt(struct loop *l, double *dt, struct error *e)
 {
     struct run *r = &l->run;
     double full = isnan(l->scene->time.dt) ? r->plan->cfl * r->dt_bound : l->scene->time.dt;
+    if (isnan(full) && finite_trace(r, e))
+        return -1;
     if (isnan(full))
         return error_set(e, EXIT_RUN, "the time step is no longer a number at step %llu, t = %g",
                          (unsigned long long)r->step, r->time);
@@ -190,6 +192,14 @@ static uint64_t particles_total(const struct plan *plan)
     return n;
 }
 
+/* "every" takes the place of "steps", whose default stands beside it. */
+static bool is_logged(const struct loop *l, uint64_t step, double time)
+{
+    const uint64_t steps = l->scene->output.log_steps;
+    return time >= l->next_log ||
+           (!isfinite(l->scene->output.log_every) && steps && step % steps == 0);
+}
+
 static int one_step(struct loop *l, struct error *e)
 {
     struct run *r = &l->run;
@@ -199,6 +209,7 @@ static int one_step(struct loop *l, struct error *e)
     r->dt = dt;
     double goal = target(l);
     bool reaches = !(r->time + dt < goal);
+    r->look = is_logged(l, r->step + 1, r->time + dt);
     if (run_advance(r, e))
         return -1;
     if (reaches)
@@ -212,15 +223,14 @@ static int after_step(struct loop *l, struct error *e)
 {
     struct run *r = &l->run;
     bool last = finished(l);
-    /* "every" takes the place of "steps", whose default stands beside it. */
-    bool by_steps = !isfinite(l->scene->output.log_every) && l->scene->output.log_steps &&
-                    r->step % l->scene->output.log_steps == 0;
     bool by_time = r->time >= l->next_log;
     watch(l);
+    if (!isfinite(energy(&l->last)) && finite_trace(r, e))
+        return -1;
     if (!isfinite(energy(&l->last)))
         return error_set(e, EXIT_RUN, "the energy is no longer a number at step %llu, t = %g",
                          (unsigned long long)r->step, r->time);
-    if ((last || by_steps || by_time) && write_log(l, e))
+    if ((last || is_logged(l, r->step, r->time)) && write_log(l, e))
         return -1;
     while (by_time && l->next_log <= r->time)
         l->next_log += l->scene->output.log_every;
@@ -237,6 +247,7 @@ static int steps(struct loop *l, struct error *e)
 {
     struct run *r = &l->run;
     double begin = omp_get_wtime(), io = r->cost.io;
+    r->look = true;
     if (run_passes(r, MOMENT_START, e) || run_passes(r, MOMENT_EVALUATE, e))
         return -1;
     run_totals(r, &l->first);

@@ -201,7 +201,8 @@ static int sweep(struct run *r, struct pass *p, const struct ranges *ranges, str
     batch_begin(r, p, &b, dst);
     reset_accumulators(r, p, ranges);
     audit_begin(r, p);
-    int status = p->before ? call(r, p, p->before, &b, ranges, e) : 0;
+    const sph_batch alone = b; /* no sources: for what each destination does by itself */
+    int status = p->before ? call(r, p, p->before, &alone, ranges, e) : 0;
     if (!status && p->shape == SPH_POINT)
         status = call(r, p, p->run, &b, ranges, e);
     for (size_t s = 0; !status && p->shape == SPH_PAIR && s < p->n_src; s++) {
@@ -209,7 +210,7 @@ static int sweep(struct run *r, struct pass *p, const struct ranges *ranges, str
         status = call(r, p, p->run, &b, ranges, e);
     }
     if (!status && p->after)
-        status = call(r, p, p->after, &b, ranges, e);
+        status = call(r, p, p->after, &alone, ranges, e);
     if (audit_end(r, p, status ? NULL : e))
         status = -1;
     mark_written(r, p);
@@ -270,6 +271,8 @@ static int run_pass(struct run *r, struct pass *p, struct error *e)
         }
     }
     ranges_free(&ranges);
+    if (!status && (r->look || r->audit))
+        status = finite_pass(r, p, e);
     p->seconds += omp_get_wtime() - begin - (r->cost.neighbour - other);
     return status;
 }
@@ -323,7 +326,8 @@ int run_passes(struct run *r, enum moment moment, struct error *e)
             return -1;
         reduce_pass(r, i);
     }
-    if (moment == MOMENT_EVALUATE)
-        bound_dt(r);
-    return 0;
+    if (moment != MOMENT_EVALUATE)
+        return 0;
+    bound_dt(r);
+    return finite_rates(r, e);
 }

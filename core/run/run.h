@@ -1,5 +1,6 @@
-/* run/run.h -- a plan in motion: neighbour lists and ghosts kept right, passes executed, columns advanced.
- * Data flows one way: the loop (loop.c) calls advance.c, which calls passes.c, which calls lists.c. */
+/* run/run.h -- a plan in motion: neighbour lists and ghosts kept right, passes executed, columns
+ * advanced. Data flows one way: the loop (loop.c) calls advance.c, which calls passes.c, which
+ * calls lists.c. */
 #ifndef RUN_RUN_H
 #define RUN_RUN_H
 
@@ -44,13 +45,15 @@ struct run {
     double proposed;      /* bound on the next dt, cfl not applied; INFINITY: none */
     struct run_cost cost;
     struct audit *audit; /* NULL: off */
+    bool look;           /* all that passes write in this step is looked at: finite.c */
 };
 
 int run_init(struct run *r, struct plan *plan, int threads, bool audit, struct error *e);
 void run_free(struct run *r);
 
-/* lists.c. At the start of an evaluation: sorts, makes ghosts and lists if they are no longer right. In its
- * midst (`within`): only ghosts and lists, since other columns hold results already. */
+/* lists.c. At the start of an evaluation: sorts, makes ghosts and lists if they are no longer
+ * right. In its midst (`within`): only ghosts and lists, since other columns hold results
+ * already. */
 int run_lists(struct run *r, bool within, struct error *e);
 /* Ghosts of this column get their parents' values, if they hold old ones. */
 void run_refresh(struct run *r, size_t array, int column);
@@ -72,6 +75,14 @@ int run_population(struct run *r, struct error *e);
 
 /* advance.c. One step of the integrator with dt = r->dt. */
 int run_advance(struct run *r, struct error *e);
+
+/* finite.c: each fails (EXIT_RUN) naming pass, property, particle and place. What a pass has
+ * just written (working storage aside, which may hold anything) is a number. */
+int finite_pass(const struct run *r, const struct pass *p, struct error *e);
+/* After an evaluation: all rates are finite. */
+int finite_rates(const struct run *r, struct error *e);
+/* When something else is no number: the first pass of which something is. 0: there is none. */
+int finite_trace(const struct run *r, struct error *e);
 
 /* totals.c */
 void run_totals(const struct run *r, struct totals *t);

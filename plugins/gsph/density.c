@@ -29,6 +29,7 @@ static const sph_prop props[] = {
 #define SPH_LOOP_SUM(S, V, MAT) S(rho, RHO) S(slope, SLOPE)
 #define SPH_LOOP_REACH SPH_GATHER
 #define SPH_LOOP_BODY "density.body.h"
+#define SPH_LOOP_DEVICE density_device
 #include <sph/pair-loop.h>
 
 /* The kernel at r = 0, corrected: its sum over a cubic lattice of unit spacing misses 1 by a little at this eta,
@@ -93,4 +94,5 @@ const sph_function gsph_density = {
     .max_sweeps = 50,
     .unfinished = "h_busy",
     .reach_scale = 1.0,
+    .device = &density_device,
 };

@@ -36,6 +36,7 @@ static const sph_prop props[] = {
     V_(grho, GRHO) V_(gp, GP) M_(gv, GV) M_(moment, MOMENT) S(spread, SPREAD)
 #define SPH_LOOP_REACH SPH_GATHER
 #define SPH_LOOP_BODY "gradients.body.h"
+#define SPH_LOOP_DEVICE gradients_device
 #include <sph/pair-loop.h>
 
 /* Inverse of a symmetric positive matrix of one to three rows, by cofactors; the ridge keeps a particle with
@@ -94,6 +95,8 @@ static sph_status correct(const sph_batch *b)
         /* Both are sums of -r w'(q): one over the neighbours' volumes, one over the particle's own. */
         double *volume = gsph_plane(&b->dst[SPREAD], 0) + i;
         *volume = trace > 0.0 ? 1.0 + b->param[SHARE] * (*volume / (rho[i] * trace) - 1.0) : 1.0;
+        if (!(trace > 0.0)) /* nobody is near: the sums are 0, and so are the gradients */
+            continue;
         invert(d, moment, inverse);
         multiply(&b->dst[GRHO], 0, i, d, inverse);
         multiply(&b->dst[GP], 0, i, d, inverse);
@@ -122,4 +125,5 @@ const sph_function gsph_gradients = {
     .after = correct,
     .reach = SPH_GATHER,
     .reach_scale = 1.0,
+    .device = &gradients_device,
 };

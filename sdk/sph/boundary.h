@@ -1,6 +1,6 @@
-/* sph/boundary.h -- a boundary condition: point or pair functions that act at named moments, at named
- * places of the scheme's recipe. A parameter that a scene sets on the condition reaches every step
- * of it whose function declares that name. */
+/* sph/boundary.h -- a boundary condition: point or pair functions that act at named moments, at
+ * named places of the scheme's recipe. A parameter that a scene sets on the condition reaches
+ * every step of it whose function declares that name. */
 #ifndef SPH_BOUNDARY_H
 #define SPH_BOUNDARY_H
 
@@ -21,12 +21,13 @@ SPH_BEGIN_DECLS
 
 /* One step of a recipe. */
 typedef struct sph_step {
-    const char *at;   /* SPH_AT_... */
+    const char *at;   /* when: SPH_AT_... */
     const char *kind; /* SPH_KIND_FUNCTION, or SPH_KIND_EOS for "the material's own" */
-    const char *name; /* of the function; ignored for the material's equation of state */
-    /* Of a boundary condition: the place among the scheme's steps. Behind the last step of this name
-     * ("eos" is the material's equation of state), or before the first one; where the recipe has no
-     * such step, or both are NULL, at its end. At most one of the two. */
+    const char
+        *name; /* of the function, of any plugin; ignored for the material's equation of state */
+    /* Of a boundary condition: the place among the scheme's steps. Behind the last step of this
+     * name ("eos" is the material's equation of state), or before the first one; where the recipe
+     * has no such step, or both are NULL, at its end. At most one of the two. */
     const char *after, *before;
     uint32_t on; /* of a boundary condition: SPH_ON_... */
     uint32_t reserved;
@@ -47,10 +48,12 @@ typedef struct sph_step {
         (at), SPH_KIND_FUNCTION, (function), (after), (before), (on), 0u                           \
     }
 
+/* What register_item takes for SPH_KIND_BOUNDARY. It has no code of its own: that is in the
+ * functions that its steps name, which are looked up when a scene uses it. */
 typedef struct sph_boundary {
     uint32_t size, reserved;
     const sph_item *item; /* params: none of its own; props: none */
-    sph_list steps;       /* of sph_step */
+    sph_list steps;       /* of sph_step, in order; at least one */
 } sph_boundary;
 
 SPH_END_DECLS

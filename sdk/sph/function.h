@@ -3,6 +3,7 @@
 #define SPH_FUNCTION_H
 
 #include <sph/batch.h>
+#include <sph/device.h>
 #include <sph/item.h>
 
 SPH_BEGIN_DECLS
@@ -16,14 +17,17 @@ SPH_BEGIN_DECLS
 #define SPH_GATHER 1u
 #define SPH_SYMMETRIC 2u
 
-/* `rate` is the time derivative of `property`; integrators act on this table alone.
+/* `rate` is the time derivative of `property`; a function declares it as written. Integrators act on
+ * this table alone.
  * SPH_DRIFT: a position, advanced with its rate (a velocity, itself advanced by SPH_KICK).
  * SPH_KICK: anything else. */
 #define SPH_KICK 1u
 #define SPH_DRIFT 2u
 typedef struct sph_rate {
-    const char *property, *rate;
-    uint32_t kind, reserved;
+    const char *property; /* what is advanced */
+    const char *rate;     /* a property of the same type, in its unit per time */
+    uint32_t kind;        /* SPH_KICK or SPH_DRIFT */
+    uint32_t reserved;
 } sph_rate;
 
 #define SPH_RATE(property, rate, kind)                                                             \
@@ -31,7 +35,8 @@ typedef struct sph_rate {
         (property), (rate), (kind), 0u                                                             \
     }
 
-/* The global minimum, maximum or sum of a property over the particles (no ghosts) after the pass. */
+/* The global minimum, maximum or sum of a property over the particles (no ghosts) after the
+ * pass. */
 #define SPH_REDUCE_MIN 1u
 #define SPH_REDUCE_MAX 2u
 #define SPH_REDUCE_SUM 3u
@@ -41,8 +46,10 @@ typedef struct sph_rate {
 #define SPH_USE_INTERNAL 2u  /* a SUM of m times the property: the internal energy of the monitor */
 #define SPH_USE_POTENTIAL 3u /* likewise: the potential energy */
 typedef struct sph_reduction {
-    const char *name, *property;
-    uint32_t op, use;
+    const char *name;     /* in the log; unique within the function */
+    const char *property; /* a declared SPH_SCALAR; the result has its unit */
+    uint32_t op;          /* SPH_REDUCE_... */
+    uint32_t use;         /* SPH_USE_... */
 } sph_reduction;
 
 #define SPH_REDUCTION(name, property, op, use)                                                     \
@@ -50,22 +57,24 @@ typedef struct sph_reduction {
         (name), (property), (op), (use)                                                            \
     }
 
+/* What register_item takes for SPH_KIND_FUNCTION. */
 typedef struct sph_function {
     uint32_t size;
     uint32_t shape; /* SPH_POINT or SPH_PAIR */
     const sph_item *item;
-    const sph_life *life;    /* or NULL */
-    sph_range_fn before;     /* per destination, before the sweeps; or NULL */
-    sph_range_fn run;        /* the point function, or the sweep over one source array */
-    sph_range_fn after;      /* per destination, after all sweeps; or NULL */
-    uint32_t reach;          /* pair: SPH_GATHER or SPH_SYMMETRIC */
-    uint32_t max_sweeps;     /* > 0: the pass iterates, at most so often; see `unfinished` */
-    const char *unfinished;  /* a written SPH_INT32 property: 1 asks for another sweep of its group.
+    const sph_life *life;   /* or NULL */
+    sph_range_fn before;    /* per destination, before the sweeps; or NULL */
+    sph_range_fn run;       /* the point function, or the sweep over one source array */
+    sph_range_fn after;     /* per destination, after all sweeps; or NULL */
+    uint32_t reach;         /* pair: SPH_GATHER or SPH_SYMMETRIC */
+    uint32_t max_sweeps;    /* > 0: the pass iterates, at most so often; see `unfinished` */
+    const char *unfinished; /* a written SPH_INT32 property: 1 asks for another sweep of its group.
                              * The pass must leave finished destinations as they are. */
-    double reach_scale;      /* times the kernel's support; 1 */
-    sph_list rates;          /* of sph_rate */
-    sph_list reductions;     /* of sph_reduction */
-    const char *device_body; /* text of the pair body for a device, or NULL */
+    double reach_scale;     /* times the kernel's support; 1 */
+    sph_list rates;         /* of sph_rate */
+    sph_list reductions;    /* of sph_reduction */
+    const sph_device_body *device; /* pair: the body of `run` for a device (device.h); NULL: none.
+                                    * The host runs one or the other: both give the same numbers */
     /* Once for each pass over an array, before all else: the only call that may change the state of
      * this use. It sees time, dt, step, parameters and reductions but no particles: count is 0, the
      * columns are NULL. Every rank calls it and must come to the same state. Or NULL. [main] */

@@ -21,25 +21,31 @@ SPH_BEGIN_DECLS
 #define SPH_DST_READ 0x01u  /* reads the destination's value */
 #define SPH_SRC_READ 0x02u  /* reads the sources' values: the host refreshes their ghosts first */
 #define SPH_DST_WRITE 0x04u /* sets the destination's value, every destination, each time */
-#define SPH_DST_SUM 0x08u   /* adds to it: the host sets it to `start` before the first source */
-#define SPH_DST_MAX 0x10u   /* takes the maximum; starts as above */
-#define SPH_DST_MIN 0x20u   /* takes the minimum; starts as above */
-#define SPH_WORK 0x40u /* with one of the above: working storage, of no interest in a snapshot */
+/* Adds to it: each pass begins anew, the host sets it to `start` before the first source. To add to
+ * what an earlier function has summed: SPH_DST_UPDATE. */
+#define SPH_DST_SUM 0x08u
+#define SPH_DST_MAX 0x10u /* takes the maximum; starts as above */
+#define SPH_DST_MIN 0x20u /* takes the minimum; starts as above */
+#define SPH_WORK 0x40u    /* with one of the above: working storage, of no interest in a snapshot */
 #define SPH_DST_UPDATE (SPH_DST_READ | SPH_DST_WRITE)
 
+/* A property that an item touches. Items that declare the same name mean the same column, so its
+ * type must be the same everywhere. */
 typedef struct sph_prop {
-    const char *name; /* "rho" */
-    const char *unit; /* "kg/m^d", in SI terms; "" for a pure number */
-    const char *doc;
-    uint32_t type;   /* SPH_SCALAR ... */
-    uint32_t access; /* SPH_DST_READ | ... */
+    const char *name; /* "rho"; [A-Za-z][A-Za-z0-9_]* */
+    const char *unit; /* "kg/m^d", in SI terms; "" or NULL for a pure number */
+    const char *doc;  /* a few words; may be NULL */
+    uint32_t type;    /* SPH_SCALAR ... */
+    uint32_t access;  /* SPH_DST_READ | ... */
     double start; /* of an accumulated property; else the initial value of one that is carried from
                       * step to step where a scene gives none (NaN: it must). Default 0 */
 } sph_prop;
 
 /* A user's parameter. The host parses, range-checks, documents and prints it. */
 typedef struct sph_param {
-    const char *name, *unit, *doc;
+    const char *name;    /* unique within the item; [A-Za-z][A-Za-z0-9_-]* */
+    const char *unit;    /* as of a property; def, min and max are in it */
+    const char *doc;     /* a few words */
     double def;          /* default; NaN: mandatory. For a choice: the index of the default */
     double min, max;     /* inclusive; min > max: unbounded */
     const char *choices; /* "exact|hllc": the value is a word, handed on as its index; else NULL */
@@ -52,6 +58,7 @@ typedef struct sph_param {
     1u /* named columns of numbers, from a file or from the scene; its number is 1 where the scene \
         * gives one, else 0. def: NaN: mandatory, else 0 */
 
+/* Static, as the descriptor that points to it. */
 typedef struct sph_item {
     uint32_t size;
     uint32_t dims;      /* bit d set: works in d dimensions */

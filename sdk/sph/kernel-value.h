@@ -1,11 +1,11 @@
-/* sph/kernel-value.h -- a kernel's value and slope for one number at a time, for what a plugin does once in a while;
- * pair bodies use sph_w and sph_dw (lanes.h). */
+/* sph/kernel-value.h -- a kernel's value and slope for one number at a time, for what a plugin does
+ * once in a while; pair bodies use sph_w and sph_dw (lanes.h). All [any]. */
 #ifndef SPH_KERNEL_VALUE_H
 #define SPH_KERNEL_VALUE_H
 
 #include <sph/batch.h>
 
-/* Likewise of a table: the cubic between the ends of a cell. */
+/* For the two below, of a kernel that is a table: the cubic between the ends of a cell. */
 static inline double sph_kernel_cubic(const sph_kernel_form *kernel, double q, int slope)
 {
     const double *p;
@@ -23,7 +23,7 @@ static inline double sph_kernel_cubic(const sph_kernel_form *kernel, double q, i
                                  : p[0] + t * (p[1] + t * (c2 + c3 * t)));
 }
 
-/* One of the two sums of a kernel form, at q = r / h, in units of h^-dim (w) or h^-(dim+1) (dw). */
+/* For the two below: one of the two sums of a kernel form. */
 static inline double sph_kernel_sum(const sph_kernel_form *kernel, double q, int slope)
 {
     double sum = 0.0;
@@ -44,11 +44,13 @@ static inline double sph_kernel_sum(const sph_kernel_form *kernel, double q, int
     return sum * kernel->norm;
 }
 
+/* W at q = r / h, to be multiplied by h^-dim. */
 static inline double sph_kernel_w(const sph_kernel_form *kernel, double q)
 {
     return sph_kernel_sum(kernel, q, 0);
 }
 
+/* dW/dr at q = r / h, to be multiplied by h^-(dim+1). */
 static inline double sph_kernel_dw(const sph_kernel_form *kernel, double q)
 {
     return sph_kernel_sum(kernel, q, 1);

@@ -1,6 +1,7 @@
-/* sph/lanes.h -- the words in which a pair body is written: R (a real in every lane), B (a mask), and
- * functions on them. Included by pair-loop.h once for each instruction set, with SPH_ISA (a suffix)
- * and SPH_WIDTH (lanes of a vector) defined; the same words mean OpenCL vectors on a device.
+/* sph/lanes.h -- the words in which a pair body is written: R (a real in every lane), B (a mask),
+ * and functions on them. Included by pair-loop.h once for each instruction set, with SPH_ISA (a
+ * suffix) and SPH_WIDTH (lanes of a vector) defined; the same words mean OpenCL vectors on a
+ * device.
  *
  *   R a = sph_num(0.5);              a constant in every lane (a * 0.5 needs none)
  *   a + b, a * b, a / b, -a          as ever;  a < b, a >= b ... give a B;  m & n, m | n, ~m

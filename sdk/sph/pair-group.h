@@ -1,6 +1,6 @@
 /* sph/pair-group.h -- the loop itself, for one instruction set and dimension; the inside of
- * pair-dims.h. SPH_WIDTH destinations of a group stand in the lanes of R; their common source list is
- * walked once, each source broadcast: no gather, no horizontal sum, no scatter. */
+ * pair-dims.h. SPH_WIDTH destinations of a group stand in the lanes of R; their common source list
+ * is walked once, each source broadcast: no gather, no horizontal sum, no scatter. */
 
 #define SPH_P(column, c) ((double *)(column).data + (size_t)(c) * (column).plane)
 

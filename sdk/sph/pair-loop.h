@@ -13,6 +13,7 @@
  *   #define SPH_LOOP_REACH SPH_SYMMETRIC      or SPH_GATHER
  *   #define SPH_LOOP_SELF 1                   1: the body also gets the self pair (r = 0)
  *   #define SPH_LOOP_BODY "my_sweep.body.h"   the body, found by the include path
+ *   #define SPH_LOOP_DEVICE my_device         optional: the same body for devices, see below
  *   #include <sph/pair-loop.h>
  *
  * Leave out the lists that are not needed. Within the body there are besides:
@@ -20,10 +21,22 @@
  *   K, the kernel; in, the mask of lanes that are within reach; sph_add(acc, value),
  *   sph_take_min(acc, value), sph_take_max(acc, value), which touch those lanes only: a body may
  *   give NaN in the others; b, the batch (b->time, b->dt). See lanes.h for the words.
- * The kernel's argument is r * hinv; W(r, h) = sph_ipow(hinv, DIM) * sph_w(K, r * hinv). */
+ * The kernel's argument is r * hinv; W(r, h) = sph_ipow(hinv, DIM) * sph_w(K, r * hinv) and
+ * dW/dr = sph_ipow(hinv, DIM + 1) * sph_dw(K, r * hinv).
+ *
+ * With SPH_LOOP_DEVICE there is besides a `static const sph_device_body my_device`, for the member
+ * `device` of sph_function: these lists, and the text of the very file SPH_LOOP_BODY, which the
+ * assembler embeds (.incbin). For that the body's folder must be given by -I: gcc hands -iquote to
+ * its preprocessor alone, and the assembler says "file not found". (With -flto, also by -Wa,-I: it
+ * is run as the plugin is linked.) Each such name may stand once in a plugin, or the linker finds a
+ * multiple definition.
+ * device.h says what a body for a device may hold. If it uses macros, put them into a file that you
+ * include before, and embed that too:
+ *   #define SPH_LOOP_PRELUDE "my_macros.h" */
 
 #include <math.h>
 #include <sph/batch.h>
+#include <sph/device.h>
 #include <sph/function.h>
 #include <sph/item.h>
 #include <sph/kernel-value.h>
@@ -131,6 +144,10 @@ static sph_status SPH_LOOP(const sph_batch *b)
     return base[b->dim](b);
 }
 
+#ifdef SPH_LOOP_DEVICE
+#include <sph/pair-device.h>
+#endif
+
 #undef SPH_LOOP
 #undef SPH_LOOP_I
 #undef SPH_LOOP_J
@@ -141,3 +158,5 @@ static sph_status SPH_LOOP(const sph_batch *b)
 #undef SPH_LOOP_REACH
 #undef SPH_LOOP_SELF
 #undef SPH_LOOP_BODY
+#undef SPH_LOOP_DEVICE
+#undef SPH_LOOP_PRELUDE

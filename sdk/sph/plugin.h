@@ -1,9 +1,10 @@
-/* sph/plugin.h -- the plugin's descriptor and its one exported function; includes all of the ABI. */
+/* sph/plugin.h -- the plugin's descriptor and its one exported function. Includes the whole ABI. */
 #ifndef SPH_PLUGIN_H
 #define SPH_PLUGIN_H
 
 #include <sph/batch.h>
 #include <sph/boundary.h>
+#include <sph/device.h>
 #include <sph/eos.h>
 #include <sph/exact.h>
 #include <sph/function.h>
@@ -20,16 +21,23 @@ SPH_BEGIN_DECLS
 
 #define SPH_PLUGIN_MAGIC 0x4c504853u /* "SHPL" */
 
+/* The plugin's static descriptor. */
 typedef struct sph_plugin {
-    uint32_t size, magic, abi_major,
-        abi_minor; /* checked before any other code of the plugin runs */
-    const char *name, *version, *license, *doc;
-    /* Registers, nothing else: no files, no devices, no MPI, no output. [main] */
+    uint32_t size, magic;          /* these four are checked before any other code of the plugin */
+    uint32_t abi_major, abi_minor; /* what it asks of its host */
+    const char *name;              /* [a-z0-9-]; unique among the plugins of a run */
+    const char *version;           /* "1.0"; shown, and asked for by `sph info --atleast` */
+    const char *license;           /* SPDX; may be NULL */
+    const char *doc;               /* one line; may be NULL */
+    /* Registers, nothing else: no files, no devices, no MPI, no output. Anything but SPH_OK refuses
+     * the plugin with the sentence given to host->fail; fini is not called then. [main] */
     sph_status (*init)(const sph_host *);
-    void (*fini)(const sph_host *); /* or NULL. [main] */
+    /* Before the plugin is closed, after all states are destroyed; or NULL. [main] */
+    void (*fini)(const sph_host *);
 } sph_plugin;
 
-/* The only symbol that a plugin exports. A function, so that any loader finds it. */
+/* The only symbol that a plugin exports. A function, so that any loader finds it. Returns the same
+ * static descriptor however often it is called, and does nothing else. [main] */
 SPH_EXPORT const sph_plugin *sph_plugin_entry(void);
 typedef const sph_plugin *(*sph_plugin_entry_fn)(void);
 

@@ -8,13 +8,16 @@
 SPH_BEGIN_DECLS
 
 #define SPH_KIND_SCHEME "sph.scheme/0"
+
+/* What register_item takes for SPH_KIND_SCHEME. It has no code of its own: the functions, kernel
+ * and integrator that it names are looked up when a scene uses it, and may be other plugins'. */
 typedef struct sph_scheme {
     uint32_t size, reserved;
     const sph_item *item;   /* params: none of its own; props: none */
     const char *kernel;     /* default kernel, by name */
     const char *integrator; /* default integrator, by name */
-    double cfl;             /* default time-step number */
-    sph_list steps;         /* of sph_step, in order */
+    double cfl;             /* default time-step number, a pure number > 0 */
+    sph_list steps;         /* of sph_step, in order; at least one */
     sph_list rates;         /* of sph_rate: those no function declares, x by v among them */
 } sph_scheme;
 

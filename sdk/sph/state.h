@@ -1,7 +1,7 @@
-/* sph/state.h -- extension: the plugin's own state in a checkpoint. What lies in properties of particles
- * is saved by the host; this is for what an item keeps beside them (sph_life), such as a random
- * number's seed or the position of a driven wall. An item whose state is made anew by `create` from
- * its parameters alone needs none of it. */
+/* sph/state.h -- extension: the plugin's own state in a checkpoint. What lies in properties of
+ * particles is saved by the host; this is for what an item keeps beside them (sph_life), such as a
+ * random number's seed or the position of a driven wall. An item whose state is made anew by
+ * `create` from its parameters alone needs none of it. */
 #ifndef SPH_STATE_H
 #define SPH_STATE_H
 
@@ -35,9 +35,9 @@ typedef struct sph_state {
 
 typedef struct sph_state_ext {
     uint32_t size, reserved;
-    /* Says that the registered item `name` of `kind` (SPH_KIND_...) of this plugin has such a state.
-     * The host keeps the pointer. SPH_E_INVALID with a message if the item has no life, or a
-     * function is missing. [main], in init only, after register_item */
+    /* Says that the registered item `name` of `kind` (SPH_KIND_...) of this plugin has such a
+     * state, a static struct as a descriptor is. SPH_E_INVALID with a message if the item has no
+     * life, or a function is missing. [main], in init only, after register_item */
     sph_status (*declare)(const sph_host *, const char *kind, const char *name, const sph_state *);
 } sph_state_ext;
 

@@ -23,8 +23,8 @@ typedef struct sph_table {
 
 typedef struct sph_tables {
     uint32_t size, reserved;
-    /* The table that the scene gives to `param`; NULL if it gives none, or if no table of that name is
-     * declared. Keep the pointer in your state. [main], in sph_life.create only */
+    /* The table that the scene gives to `param`; NULL if it gives none, or if no table of that
+     * name is declared. Keep the pointer in your state. [main], in sph_life.create only */
     const sph_table *(*get)(const sph_config *, const char *param);
 } sph_tables;
 
@@ -44,7 +44,8 @@ static inline const double *sph_table_column(const sph_table *table, const char 
     return NULL;
 }
 
-/* y at x by straight lines between the rows; x_column rises. Beyond the ends the end's value. [any] */
+/* y at x by straight lines between the rows; x_column rises. Beyond the ends the end's value.
+ * [any] */
 static inline double sph_table_linear(const sph_table *table, const double *x_column,
                                       const double *y_column, double x)
 {

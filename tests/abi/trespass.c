@@ -118,9 +118,25 @@ static const sph_function pair = {.size = SIZE(sph_function),
                                   .reach = SPH_GATHER,
                                   .reach_scale = 1};
 
+/* A pair function that reads of its sources what it declares of destinations alone. */
+static const sph_prop source_props[] = {
+    {"m", "", "", SPH_SCALAR, SPH_DST_READ, 0},
+    {"sum", "", "", SPH_SCALAR, SPH_DST_SUM, 0},
+};
+static const sph_item source_item = {SIZE(sph_item),        SPH_ALL_DIMS, "trespass-source",
+                                     "a trespasser",        "",           SPH_NO_LIST,
+                                     SPH_LIST(source_props)};
+static const sph_function source = {.size = SIZE(sph_function),
+                                    .shape = SPH_PAIR,
+                                    .item = &source_item,
+                                    .run = pair_run,
+                                    .reach = SPH_GATHER,
+                                    .reach_scale = 1};
+
 static sph_status init(const sph_host *host)
 {
-    const sph_function *const all[] = {&writer, &keeper, &reader, &leaver, &overrunner, &pair};
+    const sph_function *const all[] = {&writer,     &keeper, &reader, &leaver,
+                                       &overrunner, &pair,   &source};
     for (size_t i = 0; i < sizeof all / sizeof all[0]; i++) {
         const sph_status status = host->register_item(host, SPH_KIND_FUNCTION, all[i]);
         if (status != SPH_OK)

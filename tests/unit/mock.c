@@ -72,11 +72,33 @@ static void reset_items(void)
     mock.life = (sph_life){sizeof(sph_life), 0, NULL, NULL};
 }
 
+static sph_list one_value(int k, const char *name, uint32_t index, uint32_t type)
+{
+    mock.value[k] = (sph_device_value){name, index, type};
+    return (sph_list){&mock.value[k], 1, sizeof(mock.value[k])};
+}
+
+/* A pair function of its own: rho, read on both sides, is index 0; p, written, index 1. */
+static void reset_device(void)
+{
+    mock.device = (sph_device_body){.size = sizeof(sph_device_body),
+                                    .reach = SPH_GATHER,
+                                    .text = "sph_add(sum, rho_i);",
+                                    .file = "thing.body.h",
+                                    .i = one_value(0, "rho", 0, SPH_SCALAR),
+                                    .j = one_value(1, "rho", 0, SPH_SCALAR),
+                                    .sum = one_value(2, "sum", 1, SPH_SCALAR),
+                                    .min = one_value(3, "least", 1, SPH_SCALAR),
+                                    .max = one_value(4, "most", 1, SPH_SCALAR),
+                                    .param = one_value(5, "gamma", 0, 0)};
+}
+
 void mock_reset(enum kind kind)
 {
     memset(&mock, 0, sizeof(mock));
     mock.kind = kind;
     reset_items();
+    reset_device();
     mock.rate[0] = (sph_rate){"u", "p", SPH_KICK, 0};
     mock.reduction[0] = (sph_reduction){"least", "rho", SPH_REDUCE_MIN, SPH_USE_TIME_STEP};
     mock.step[0] = (sph_step)SPH_STEP(SPH_AT_EVALUATE, "thing");

@@ -16,6 +16,8 @@ extern struct mock {
     sph_kernel_term term[2];
     sph_item item, plain_item;
     sph_life life;
+    sph_device_value value[6]; /* i, j, sum, min, max, param */
+    sph_device_body device;    /* of the function, where `function.device` is set to it */
     sph_function function;
     sph_eos eos;
     sph_boundary boundary;

@@ -29,11 +29,22 @@ struct slip {
 #define TEXT(place, s) .text = &(place), .text_value = (s)
 #define POINTER(place, p) .pointer = (void *)&(place), .pointer_value = (p)
 
+/* The function gets a body for devices: its property 0 is then read at the sources too. */
+static bool with_device;
+
+static void add_device(void)
+{
+    mock.function.device = &mock.device;
+    mock.prop[0].access = SPH_DST_READ | SPH_SRC_READ;
+}
+
 static void each_is_refused(const struct slip *slips, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
         const char *why;
         mock_reset(slips[i].kind);
+        if (with_device)
+            add_device();
         if (slips[i].number)
             *slips[i].number = slips[i].value;
         if (slips[i].real)
@@ -135,6 +146,61 @@ static void parameters(void **state)
 
     (void)state;
     ALL_REFUSED(slips);
+}
+
+static void device_bodies(void **state)
+{
+    static char endless[(1u << 20) + 1];
+    const struct slip slips[] = {
+        {KIND_FUNCTION, "size of the device body is 8 bytes", NUMBER(mock.device.size, 8)},
+        {KIND_FUNCTION, "reach of the device body is 3", NUMBER(mock.device.reach, 3)},
+        {KIND_FUNCTION, "reach of the device body is symmetric, that of the function gather",
+         NUMBER(mock.device.reach, SPH_SYMMETRIC)},
+        {KIND_FUNCTION, "self of the device body is 2", NUMBER(mock.device.self, 2)},
+        {KIND_FUNCTION, "text of the device body is missing", TEXT(mock.device.text, NULL)},
+        {KIND_FUNCTION, "text of the device body is missing", TEXT(mock.device.text, "")},
+        {KIND_FUNCTION, "text of the device body is longer", TEXT(mock.device.text, endless)},
+        {KIND_FUNCTION, "file of the device body's text is missing", TEXT(mock.device.file, NULL)},
+        {KIND_FUNCTION, "file of the device body's text is missing", TEXT(mock.device.file, "\n")},
+        {KIND_FUNCTION, "file of the device body's prelude is missing",
+         TEXT(mock.device.prelude, "#define A")},
+        {KIND_FUNCTION, "i[0] of the device body has no name", TEXT(mock.value[0].name, NULL)},
+        {KIND_FUNCTION, "j[0] of the device body has no name", TEXT(mock.value[1].name, "a b")},
+        {KIND_FUNCTION, "sum[0] of the device body has no name", TEXT(mock.value[2].name, "sph_w")},
+        {KIND_FUNCTION, "min of the device body: \"least\" is property 3, but 3 are declared",
+         NUMBER(mock.value[3].index, 3)},
+        {KIND_FUNCTION, "type of \"most\" is 2, that of the property \"p\" 1",
+         NUMBER(mock.value[4].type, SPH_VECTOR)},
+        {KIND_FUNCTION, "type of \"most\" is 1, that of the property \"again\" 5",
+         NUMBER(mock.value[4].index, 2)},
+        {KIND_FUNCTION, "property \"p\" is not declared as read at the destination",
+         NUMBER(mock.value[0].index, 1)},
+        {KIND_FUNCTION, "property \"p\" is not declared as read at the sources",
+         NUMBER(mock.value[1].index, 1)},
+        {KIND_FUNCTION, "property \"rho\" is not declared as written",
+         NUMBER(mock.value[2].index, 0)},
+        {KIND_FUNCTION, "param of the device body: \"gamma\" is parameter 3, but 3 are declared",
+         NUMBER(mock.value[5].index, 3)},
+        {KIND_FUNCTION, "list of i of the device body has a stride of 4",
+         NUMBER(mock.device.i.stride, 4)},
+        {KIND_FUNCTION, "list of param of the device body says 4000000000",
+         NUMBER(mock.device.param.count, 4000000000u)},
+    };
+
+    (void)state;
+    memset(endless, ' ', sizeof(endless) - 1);
+    with_device = true;
+    ALL_REFUSED(slips);
+    mock_reset(KIND_FUNCTION);
+    add_device();
+    assert_null(mock_refusal());
+    mock.device.i = (sph_list){mock.value, 2, sizeof(mock.value[0])};
+    assert_non_null(strstr(mock_refusal(), "i of the device body names \"rho\" twice"));
+    mock_reset(KIND_FUNCTION);
+    mock.function.device = &mock.device;
+    mock.function.shape = SPH_POINT;
+    assert_non_null(strstr(mock_refusal(), "\"thing\": device is set, but the shape is not pair"));
+    with_device = false;
 }
 
 static void functions(void **state)
@@ -372,6 +438,7 @@ int main(void)
         cmocka_unit_test(properties),
         cmocka_unit_test(parameters),
         cmocka_unit_test(functions),
+        cmocka_unit_test(device_bodies),
         cmocka_unit_test(kernels),
         cmocka_unit_test(recipes),
         cmocka_unit_test(missing_code),

@@ -1,0 +1,351 @@
+/* opencl/pair_source.c -- writes the OpenCL C of a sweep (see pair_source.h). A work item is a
+ * destination, R is one double: the words of sph/lanes.h and the loop of sph/pair-group.h, in
+ * the same order of operations, so that the numbers differ by rounding alone. Keep it in step
+ * with those two. */
+#include "config.h"
+
+#include "opencl/pair_source.h"
+
+#include <sph/function.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* -- Words -------- */
+
+/* Truth is bit 0 of a mask: comparisons give 1, and ~ turns it over. Masks select, as natively:
+ * what a body computes out of reach, a NaN too, goes nowhere. */
+static const char *const words[] = {
+    "#pragma OPENCL EXTENSION cl_khr_fp64 : enable",
+    "typedef uint uint32_t;",
+    "typedef ulong uint64_t;",
+    "typedef int int32_t;",
+    "typedef long int64_t;",
+    "typedef double R;",
+    "typedef int B;",
+    "typedef struct { double time, dt; ulong step; uint dim; } sph_batch;",
+    "typedef struct {",
+    "    double knot;",
+    "    uint power, n_coef, dpower, dn_coef;",
+    "    double c[6], d[6];",
+    "} sph_kernel_piece;",
+    "typedef struct {",
+    "    uint size, dim, n_pieces, reserved;",
+    "    double support, norm;",
+    "    sph_kernel_piece piece[4];",
+    "    ulong table;",
+    "    double cells;",
+    "    uint n_table, reserved2;",
+    "} sph_kernel_form;",
+    "#define SPH_FORM __constant sph_kernel_form",
+    "",
+    "#define sph_num(a) ((R)(a))",
+    "static R sph_select(B m, R a, R b) { return m & 1 ? a : b; }",
+    "static R sph_max(R a, R b) { return a > b ? a : b; }",
+    "static R sph_min(R a, R b) { return a < b ? a : b; }",
+    "static R sph_abs(R a) { return a < 0.0 ? -a : a; }",
+    "static R sph_sign(R a) { return (a > 0.0 ? 1.0 : 0.0) - (a < 0.0 ? 1.0 : 0.0); }",
+    "static R sph_sqrt(R a) { return sqrt(a); }",
+    "static R sph_pow_where(B m, R a, R b) { return m & 1 ? pow(a, b) : 1.0; }",
+    "static R sph_ipow(R a, uint n)",
+    "{",
+    "    R out = n & 1u ? a : 1.0;",
+    "    a *= a;",
+    "    if (n & 2u)",
+    "        out *= a;",
+    "    a *= a;",
+    "    if (n & 4u)",
+    "        out *= a;",
+    "    a *= a;",
+    "    if (n & 8u)",
+    "        out *= a;",
+    "    return out;",
+    "}",
+    "#define sph_add(acc, value) ((acc) += sph_select(in, SPH_TERM(value), 0.0))",
+    "#define sph_take_min(acc, value) ((acc) = sph_min(sph_select(in, (value), (acc)), (acc)))",
+    "#define sph_take_max(acc, value) ((acc) = sph_max(sph_select(in, (value), (acc)), (acc)))",
+    "",
+};
+
+static const char *const kernel_words[] = {
+    "static R sph_sum_of_powers(R t, uint power, uint n, __constant double *c)",
+    "{",
+    "    R sum = c[n - 1];",
+    "    for (uint k = n - 1; k-- > 0;)",
+    "        sum = sum * t + c[k];",
+    "    return sum * sph_ipow(t, power);",
+    "}",
+    "static R sph_cubic(SPH_FORM *form, __global const double *table, R q, int slope)",
+    "{",
+    "    if (!(q >= 0.0 && q < form->support))",
+    "        return 0.0;",
+    "    const double cell = q * form->cells;",
+    "    const uint k = cell < form->n_table - 1 ? (uint)cell : form->n_table - 1;",
+    "    __global const double *p = table + 2 * (ulong)k;",
+    "    const double t = cell - k;",
+    "    const double c2 = 3.0 * (p[2] - p[0]) - 2.0 * p[1] - p[3];",
+    "    const double c3 = p[1] + p[3] - 2.0 * (p[2] - p[0]);",
+    "    return form->norm * (slope ? form->cells * (p[1] + t * (2.0 * c2 + 3.0 * c3 * t))",
+    "                               : p[0] + t * (p[1] + t * (c2 + c3 * t)));",
+    "}",
+    "static R sph_value(SPH_FORM *form, __global const double *table, R q)",
+    "{",
+    "    R sum = 0.0;",
+    "    if (form->n_table)",
+    "        return sph_cubic(form, table, q, 0);",
+    "    for (uint k = 0; k < form->n_pieces; k++) {",
+    "        __constant sph_kernel_piece *p = &form->piece[k];",
+    "        const R t = p->knot - q;",
+    "        sum += sph_sum_of_powers(t > 0.0 ? t : 0.0, p->power, p->n_coef, p->c);",
+    "    }",
+    "    return sum * form->norm;",
+    "}",
+    "static R sph_slope(SPH_FORM *form, __global const double *table, R q)",
+    "{",
+    "    R sum = 0.0;",
+    "    if (form->n_table)",
+    "        return sph_cubic(form, table, q, 1);",
+    "    for (uint k = 0; k < form->n_pieces; k++) {",
+    "        __constant sph_kernel_piece *p = &form->piece[k];",
+    "        const R t = p->knot - q;",
+    "        const R d = sph_sum_of_powers(t > 0.0 ? t : 0.0, p->dpower, p->dn_coef, p->d);",
+    "        sum += t > 0.0 ? d : 0.0;",
+    "    }",
+    "    return sum * form->norm;",
+    "}",
+    "#define sph_w(form, q) sph_value((form), sph_table, (q))",
+    "#define sph_dw(form, q) sph_slope((form), sph_table, (q))",
+    "",
+};
+
+/* Between the values of the destination and those of a source. */
+static const char *const pair_words[] = {
+    "    for (ulong sph_k = sph_begin[sph_g] - sph_base; sph_k < sph_begin[sph_g + 1] - sph_base;",
+    "         sph_k++) {",
+    "        const ulong sph_j = sph_list[sph_k];",
+    "        R dx[DIM];",
+    "        R r2 = 0.0;",
+    "        for (int sph_c = 0; sph_c < DIM; sph_c++) {",
+    "            dx[sph_c] = sph_x_i[sph_c] - sph_xs[sph_c * sph_n_src + sph_j];",
+    "            r2 += dx[sph_c] * dx[sph_c];",
+    "        }",
+    "        const R h_j = sph_hs[sph_j];",
+    "        const R sph_reach = K->support * SPH_REACH;",
+    "        B in = r2 < sph_reach * sph_reach;",
+    "        if (!SPH_SELF)",
+    "            in &= !(sph_same && sph_first + sph_i == sph_j);",
+    "        const R r = sph_sqrt(r2);",
+    "        const R rinv = r2 > 0.0 ? 1.0 / r : 0.0;",
+    "        const R hinv_j = 1.0 / h_j;",
+};
+
+static void put(FILE *out, const char *const *line, size_t n)
+{
+    for (size_t i = 0; i < n; i++)
+        fprintf(out, "%s\n", line[i]);
+}
+#define PUT(out, lines) put((out), (lines), sizeof(lines) / sizeof((lines)[0]))
+
+/* -- Columns -------- */
+
+static const sph_device_value *value_at(const sph_list *list, uint32_t k)
+{
+    return (const sph_device_value *)(const void *)((const char *)list->data +
+                                                    (size_t)k * list->stride);
+}
+
+static void add_columns(struct pair_column *column, size_t *n, const sph_list *list, bool source,
+                        bool written)
+{
+    for (uint32_t k = 0; k < list->count; k++) {
+        const sph_device_value *v = value_at(list, k);
+        size_t i = 0;
+        while (i < *n && !(column[i].index == v->index && column[i].source == source))
+            i++;
+        if (i == *n)
+            column[(*n)++] = (struct pair_column){v->index, v->type, source, false};
+        column[i].written |= written;
+    }
+}
+
+int pair_columns(struct pair_column **out, size_t *n, const sph_device_body *d, struct error *e)
+{
+    const size_t most =
+        (size_t)d->i.count + d->j.count + d->sum.count + d->min.count + d->max.count;
+
+    *n = 0;
+    *out = calloc(most + 1, sizeof(**out));
+    if (!*out)
+        return error_memory(e, "a list of columns", most * sizeof(**out));
+    add_columns(*out, n, &d->i, false, false);
+    add_columns(*out, n, &d->sum, false, true);
+    add_columns(*out, n, &d->min, false, true);
+    add_columns(*out, n, &d->max, false, true);
+    add_columns(*out, n, &d->j, true, false);
+    return 0;
+}
+
+/* -- The kernel -------- */
+
+/* "", "[DIM]", "[DIM * DIM]", and the number of components. */
+static const char *extent(uint32_t type)
+{
+    return type == SPH_VECTOR ? "[DIM]" : type == SPH_MATRIX ? "[DIM * DIM]" : "";
+}
+
+static const char *components(uint32_t type)
+{
+    return type == SPH_VECTOR ? "DIM" : type == SPH_MATRIX ? "DIM * DIM" : "1";
+}
+
+static void put_arguments(FILE *out, const struct pair_column *column, size_t n)
+{
+    fputs("__kernel void " PAIR_KERNEL "(\n"
+          "    const ulong sph_count, const ulong sph_n_src, const ulong sph_first,\n"
+          "    const ulong sph_base, const uint sph_same, const uint sph_absolute,\n"
+          "    const double sph_time, const double sph_dt, const ulong sph_step,\n"
+          "    __global const ulong *sph_begin,\n"
+          "    __global const uint *sph_list, SPH_FORM *K,\n"
+          "    __global const double *sph_table, __global const double *sph_param,\n"
+          "    __global const double *sph_xd, __global const double *sph_hd,\n"
+          "    __global const double *sph_xs, __global const double *sph_hs",
+          out);
+    for (size_t k = 0; k < n; k++)
+        fprintf(out, ",\n    __global %sdouble *sph_%c%u", column[k].written ? "" : "const ",
+                column[k].source ? 's' : 'd', column[k].index);
+    fputs(")\n{\n", out);
+}
+
+/* name_i or name_j out of their columns. */
+static void put_values(FILE *out, const sph_list *list, bool source)
+{
+    const char side = source ? 's' : 'd', name = source ? 'j' : 'i';
+    const char *const plane = source ? "sph_n_src" : "sph_count";
+
+    for (uint32_t k = 0; k < list->count; k++) {
+        const sph_device_value *v = value_at(list, k);
+        if (v->type == SPH_SCALAR)
+            fprintf(out, "    const R %s_%c = sph_%c%u[sph_%c];\n", v->name, name, side, v->index,
+                    name);
+        else
+            fprintf(out,
+                    "    R %s_%c%s;\n    for (int sph_c = 0; sph_c < %s; sph_c++)\n"
+                    "        %s_%c[sph_c] = sph_%c%u[sph_c * %s + sph_%c];\n",
+                    v->name, name, extent(v->type), components(v->type), v->name, name, side,
+                    v->index, plane, name);
+    }
+}
+
+static void put_accumulators(FILE *out, const sph_list *list, const char *start)
+{
+    for (uint32_t k = 0; k < list->count; k++) {
+        const sph_device_value *v = value_at(list, k);
+        if (v->type == SPH_SCALAR)
+            fprintf(out, "    R %s = %s;\n", v->name, start);
+        else
+            fprintf(out,
+                    "    R %s%s;\n    for (int sph_c = 0; sph_c < %s; sph_c++)\n"
+                    "        %s[sph_c] = %s;\n",
+                    v->name, extent(v->type), components(v->type), v->name, start);
+    }
+}
+
+static void put_sums(FILE *out, const sph_list *list)
+{
+    for (uint32_t k = 0; k < list->count; k++) {
+        const sph_device_value *v = value_at(list, k);
+        fprintf(out,
+                "    for (int sph_c = 0; sph_c < %s; sph_c++)\n"
+                "        sph_d%u[sph_c * sph_count + sph_i] += %s%s;\n",
+                components(v->type), v->index, v->name, v->type == SPH_SCALAR ? "" : "[sph_c]");
+    }
+}
+
+static void put_extremes(FILE *out, const sph_list *list, const char *function)
+{
+    for (uint32_t k = 0; k < list->count; k++) {
+        const sph_device_value *v = value_at(list, k);
+        fprintf(out, "    sph_d%u[sph_i] = %s(sph_d%u[sph_i], %s);\n", v->index, function, v->index,
+                v->name);
+    }
+}
+
+/* A text of the plugin, under the name of its file: compilers then speak of that file and its
+ * lines. */
+static void put_text(FILE *out, const char *text, const char *file)
+{
+    fputs("#line 1 \"", out);
+    for (const char *s = file; *s; s++)
+        fprintf(out, *s == '"' || *s == '\\' ? "\\%c" : "%c", *s);
+    fprintf(out, "\"\n%s\n#line 1 \"what sph wrote behind it\"\n", text);
+}
+
+static void put_kernel(FILE *out, const sph_device_body *d, const struct pair_column *column,
+                       size_t n)
+{
+    put_arguments(out, column, n);
+    fputs("    const ulong sph_i = get_global_id(0);\n"
+          "    if (sph_i >= sph_count)\n"
+          "        return;\n"
+          "    const ulong sph_g = sph_i / SPH_LANES;\n"
+          "    const sph_batch sph_now = {sph_time, sph_dt, sph_step, DIM};\n"
+          "    const sph_batch *const b = &sph_now;\n"
+          "    R sph_x_i[DIM];\n"
+          "    for (int sph_c = 0; sph_c < DIM; sph_c++)\n"
+          "        sph_x_i[sph_c] = sph_xd[sph_c * sph_count + sph_i];\n"
+          "    const R h_i = sph_hd[sph_i];\n"
+          "    const R hinv_i = 1.0 / h_i;\n",
+          out);
+    for (uint32_t k = 0; k < d->param.count; k++)
+        fprintf(out, "    const double %s = sph_param[%u];\n", value_at(&d->param, k)->name,
+                value_at(&d->param, k)->index);
+    put_values(out, &d->i, false);
+    put_accumulators(out, &d->sum, "0.0");
+    put_accumulators(out, &d->min, "INFINITY");
+    put_accumulators(out, &d->max, "-INFINITY");
+    PUT(out, pair_words);
+    put_values(out, &d->j, true);
+    fputs("    {\n", out);
+    put_text(out, d->text, d->file);
+    fputs("    }\n    }\n", out);
+    put_sums(out, &d->sum);
+    put_extremes(out, &d->min, "fmin");
+    put_extremes(out, &d->max, "fmax");
+    fputs("}\n", out);
+}
+
+char *pair_source(const sph_device_body *d, int dim, bool measured, struct error *e)
+{
+    struct pair_column *column;
+    char *text = NULL;
+    size_t n, size;
+    FILE *out;
+    bool bad;
+
+    if (pair_columns(&column, &n, d, e))
+        return NULL;
+    out = open_memstream(&text, &size);
+    if (!out) {
+        free(column);
+        error_memory(e, "the source of a sweep", 0);
+        return NULL;
+    }
+    PUT(out, words);
+    PUT(out, kernel_words);
+    fprintf(out, "#define DIM %d\n#define SPH_LANES %u\n#define SPH_SELF %u\n", dim, SPH_LANES,
+            d->self);
+    fprintf(out, "#define SPH_REACH %s\n", d->reach == SPH_GATHER ? "h_i" : "sph_max(h_i, h_j)");
+    fprintf(out, "#define SPH_TERM(value) %s\n",
+            measured ? "(sph_absolute ? fabs(value) : (value))" : "(value)");
+    if (d->prelude)
+        put_text(out, d->prelude, d->prelude_file);
+    put_kernel(out, d, column, n);
+    bad = ferror(out);
+    bad = fclose(out) != 0 || bad;
+    free(column);
+    if (!bad)
+        return text;
+    free(text);
+    error_memory(e, "the source of a sweep", size);
+    return NULL;
+}

@@ -1,0 +1,120 @@
+/* run/finite.c -- which pass gave what is no number? The rates, which everything else follows
+ * from, are looked at after every evaluation; all that a pass writes, where the run logs
+ * (run.look). So the pass is found while the state that it worked on is still good. Reads
+ * columns, no more. */
+#include "run/run.h"
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+
+/* The first element that is no number, or with `finite` that is not finite; n: there is none. */
+static size_t first_bad(const double *value, size_t n, bool finite)
+{
+    const double most = finite ? DBL_MAX : INFINITY;
+    long bad = 0;
+    const long end = (long)n;
+#pragma omp simd reduction(+ : bad)
+    for (long i = 0; i < end; i++)
+        bad += !(fabs(value[i]) <= most);
+    for (size_t i = 0; bad && i < n; i++)
+        if (!(fabs(value[i]) <= most))
+            return i;
+    return n;
+}
+
+static bool is_real(const struct column *c)
+{
+    return c->type != SPH_INT32 && c->type != SPH_INT64;
+}
+
+/* The first bad element of a column, over its components; false: there is none. */
+static bool find_bad(const struct plan_array *a, int column, bool finite, size_t *particle,
+                     double *value)
+{
+    const struct column *c = &a->p.column[column];
+    for (uint32_t k = 0; is_real(c) && k < c->ncomp; k++) {
+        const double *plane = (const double *)c->data + k * c->plane;
+        *particle = first_bad(plane, a->p.n, finite);
+        if (*particle < a->p.n) {
+            *value = plane[*particle];
+            return true;
+        }
+    }
+    return false;
+}
+
+static int tell(const struct run *r, const char *who, const struct plan_array *a, int column,
+                size_t i, double value, struct error *e)
+{
+    const struct column *x = &a->p.column[a->position];
+    char place[128] = "";
+    size_t used = 0;
+    for (int c = 0; c < r->plan->dim && used < sizeof place; c++)
+        used += (size_t)snprintf(place + used, sizeof place - used, "%s%g", c ? ", " : "",
+                                 ((const double *)x->data)[(size_t)c * x->plane + i]);
+    return error_set(e, EXIT_RUN,
+                     "%s made \"%s\" %s for particle %lld of array \"%s\" at x = (%s), step %llu, "
+                     "t = %g",
+                     who, a->p.column[column].name, isnan(value) ? "not a number" : "infinite",
+                     (long long)((const int64_t *)a->p.column[a->id].data)[i], a->p.name, place,
+                     (unsigned long long)r->step, r->time);
+}
+
+static int check(const struct run *r, const struct pass *p, bool work, struct error *e)
+{
+    const struct plan_array *a = &r->plan->array[p->dst.array];
+    for (uint32_t k = 0; k < p->use.item->props.count; k++) {
+        const sph_prop *prop = list_at(&p->use.item->props, k);
+        const int column = p->dst.column[k];
+        size_t i = 0;
+        double value = 0.0;
+        if (column >= 0 && (work || !(prop->access & SPH_WORK)) &&
+            pass_writes(p, p->dst.array, column) && find_bad(a, column, false, &i, &value))
+            return tell(r, p->name, a, column, i, value, e);
+    }
+    return 0;
+}
+
+int finite_pass(const struct run *r, const struct pass *p, struct error *e)
+{
+    return check(r, p, false, e);
+}
+
+int finite_trace(const struct run *r, struct error *e)
+{
+    static const enum moment order[] = {MOMENT_EVALUATE, MOMENT_FINISH, MOMENT_START};
+    for (size_t m = 0; m < sizeof order / sizeof order[0]; m++)
+        for (size_t i = 0; i < r->plan->n_pass; i++)
+            if (r->plan->pass[i].moment == order[m] && check(r, &r->plan->pass[i], true, e))
+                return -1;
+    return 0;
+}
+
+/* The last pass of an evaluation that writes a column. */
+static const char *writer_of(const struct run *r, size_t array, int column)
+{
+    const char *name = "the evaluation";
+    for (size_t i = 0; i < r->plan->n_pass; i++)
+        if (r->plan->pass[i].moment == MOMENT_EVALUATE &&
+            pass_writes(&r->plan->pass[i], array, column))
+            name = r->plan->pass[i].name;
+    return name;
+}
+
+int finite_rates(const struct run *r, struct error *e)
+{
+    for (size_t k = 0; k < r->plan->n_array; k++) {
+        const struct plan_array *a = &r->plan->array[k];
+        for (size_t q = 0; q < a->n_rate; q++) {
+            const int column = a->rate[q].rate;
+            size_t i = 0;
+            double value = 0.0;
+            if (!find_bad(a, column, true, &i, &value))
+                continue;
+            if (isnan(value) && finite_trace(r, e))
+                return -1;
+            return tell(r, writer_of(r, k, column), a, column, i, value, e);
+        }
+    }
+    return 0;
+}

@@ -22,7 +22,7 @@
 #   my_thing_la_SOURCES = my-thing.c
 #   my_thing_la_CPPFLAGS = $(SPH_PLUGIN_CPPFLAGS) -I$(srcdir)
 #   my_thing_la_CFLAGS = $(SPH_PLUGIN_CFLAGS)
-#   my_thing_la_LDFLAGS = $(SPH_PLUGIN_LDFLAGS)
+#   my_thing_la_LDFLAGS = -module $(SPH_PLUGIN_LDFLAGS)   # automake looks for -module itself
 #   my_thing_la_LIBADD = $(SPH_PLUGIN_LIBS)
 #
 # serial 1

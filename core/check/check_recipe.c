@@ -77,7 +77,7 @@ void check_recipe(const struct subject *s)
         const sph_scheme *scheme = entry_scheme(s->entry);
         steps = &scheme->steps;
         missing = check_steps(&shelf, steps, dims);
-        if (!find(&shelf, KIND_KERNEL, scheme->kernel) && ++missing)
+        if (scheme->kernel && !find(&shelf, KIND_KERNEL, scheme->kernel) && ++missing)
             say(s, VERDICT_FAIL,
                 "kernel is \"%s\", which neither this plugin nor another has (--load adds one)",
                 scheme->kernel);

@@ -170,7 +170,8 @@ static void specific_json(cJSON *o, const struct entry *x)
         cJSON_AddStringToObject(o, "form", entry_kernel(x)->value ? "function" : "terms");
         break;
     case KIND_SCHEME:
-        cJSON_AddStringToObject(o, "kernel", entry_scheme(x)->kernel);
+        if (entry_scheme(x)->kernel)
+            cJSON_AddStringToObject(o, "kernel", entry_scheme(x)->kernel);
         cJSON_AddStringToObject(o, "integrator", entry_scheme(x)->integrator);
         number(o, "cfl", entry_scheme(x)->cfl);
         steps_json(o, &entry_scheme(x)->steps);

@@ -218,7 +218,7 @@ static void specific_text(const struct entry *x)
         kernel_text(entry_kernel(x));
         break;
     case KIND_SCHEME:
-        field("Kernel", "%s", entry_scheme(x)->kernel);
+        field("Kernel", "%s", entry_scheme(x)->kernel ? entry_scheme(x)->kernel : "none");
         field("Integrator", "%s, cfl %g", entry_scheme(x)->integrator, entry_scheme(x)->cfl);
         steps_text(&entry_scheme(x)->steps);
         rates_text(&entry_scheme(x)->rates);

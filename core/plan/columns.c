@@ -115,7 +115,8 @@ static int add_rate(struct plan *plan, struct plan_array *a, const sph_rate *dec
     const struct column *cy = &a->p.column[y], *cr = &a->p.column[r];
     if (cy->type != cr->type || cy->size != sizeof(double))
         return error_set(e, EXIT_REFUSED, "scheme \"%s\": %s cannot be the rate of %s: other type",
-                         plan->scheme_name, declared->rate, declared->property);
+                         plan->scheme_name ? plan->scheme_name : "none", declared->rate,
+                         declared->property);
     for (size_t i = 0; i < a->n_rate; i++)
         if (a->rate[i].property == y) {
             if (a->rate[i].rate == r)

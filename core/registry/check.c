@@ -247,7 +247,7 @@ static int check_scheme(const sph_scheme *s, struct error *e)
 {
     if (check_nothing_declared(s->item, e))
         return -1;
-    if (!check_is_name(s->kernel))
+    if (s->kernel && !check_is_name(s->kernel))
         return error_set(e, EXIT_REFUSED, "kernel is not a name");
     if (!check_is_name(s->integrator))
         return error_set(e, EXIT_REFUSED, "integrator is not a name");

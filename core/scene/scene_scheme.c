@@ -149,9 +149,10 @@ int scene_scheme(struct scene *s, const cJSON *node, struct error *e)
         return error_memory(e, "the scheme", 0);
     if (cJSON_IsString(node))
         return json_string(s->doc, s->doc->root, "scheme", true, &s->scheme.name, e);
-    if (json_string(s->doc, node, "name", true, &s->scheme.name, e) < 0)
-        return -1;
+    /* Without a name the recipe is what "edit" puts together. */
     const cJSON *edit = json_get(node, "edit");
+    if (json_string(s->doc, node, "name", edit == NULL, &s->scheme.name, e) < 0)
+        return -1;
     if (!edit)
         return 0;
     if (!cJSON_IsArray(edit))

@@ -14,7 +14,7 @@ SPH_BEGIN_DECLS
 typedef struct sph_scheme {
     uint32_t size, reserved;
     const sph_item *item;   /* params: none of its own; props: none */
-    const char *kernel;     /* default kernel, by name */
+    const char *kernel;     /* default kernel, by name; NULL: none, for recipes without pairs */
     const char *integrator; /* default integrator, by name */
     double cfl;             /* default time-step number, a pure number > 0 */
     sph_list steps;         /* of sph_step, in order; at least one */

@@ -270,7 +270,7 @@ static void kernels(void **state)
 static void recipes(void **state)
 {
     static const struct slip slips[] = {
-        {KIND_SCHEME, "kernel is not a name", TEXT(mock.scheme.kernel, NULL)},
+        {KIND_SCHEME, "kernel is not a name", TEXT(mock.scheme.kernel, "")},
         {KIND_SCHEME, "integrator is not a name", TEXT(mock.scheme.integrator, "K D K")},
         {KIND_SCHEME, "cfl is 0", REAL(mock.scheme.cfl, 0)},
         {KIND_SCHEME, "cfl is inf", REAL(mock.scheme.cfl, INFINITY)},

@@ -123,7 +123,8 @@ static void own(char *base, char **owner, const struct shape *shape)
 
 static char *wall; /* the last byte of a page, behind which nothing may be touched */
 
-/* Somewhere; but not where the address sanitizer keeps its books, which are there for all but it. */
+/* Somewhere; but not where the address sanitizer keeps its books, which are there for all but
+ * it. */
 static const void *wild(void)
 {
     const uint64_t p = draw() >> below(64);
@@ -241,7 +242,10 @@ static void change_list(sph_list *list, const sph_list *was)
 
     switch (below(3)) {
     case 0:
-        list->data = some_pointer(was);
+        if (list->count == was->count && list->stride == was->stride)
+            list->data = some_pointer(was);
+        else
+            list->data = wild(); /* a copy of what there was would be too short */
         return;
     case 1:
         list->count = below(2) ? (uint32_t)below(9) : some_word(list->count);
@@ -251,6 +255,8 @@ static void change_list(sph_list *list, const sph_list *was)
         break;
     }
     bytes = (size_t)list->count * list->stride;
+    if (bytes > 1u << 20)
+        list->data = wild();
     if (bytes == 0 || bytes > 1u << 20)
         return; /* absurd, or more than there is, which is for reach.c to find out */
     data = keep(malloc(bytes));

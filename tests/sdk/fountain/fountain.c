@@ -140,7 +140,6 @@ static const sph_item scheme_item = {
 static const sph_scheme scheme = {
     .size = SIZE(sph_scheme),
     .item = &scheme_item,
-    .kernel = "wendland-c2", /* of no use here, but a scheme has one */
     .integrator = "kdk",
     .cfl = 1,
     .steps = SPH_LIST(drift_steps),

@@ -65,7 +65,8 @@ static const sph_kernel gauss = {
     .slope = gauss_slope,
 };
 
-/* -- Moments: sums over the particles, as a scheme would sum them; and integrals over the kernel. */
+/* -- Moments: sums over the particles, as a scheme would sum them; and integrals over the kernel. The
+ * scene puts its recipe together from this function alone. */
 
 enum { M, LATTICE_0, LATTICE_2, LATTICE_SLOPE, INTEGRAL_0, INTEGRAL_2 };
 static const sph_prop props[] = {
@@ -132,24 +133,6 @@ static const sph_function moments = {
     .reach_scale = 1,
 };
 
-/* A scene of its own for it. */
-static const sph_step steps[] = {SPH_STEP(SPH_AT_EVALUATE, "moments")};
-static const sph_item scheme_item = {
-    .size = SIZE(sph_item),
-    .dims = SPH_ALL_DIMS,
-    .name = "moments",
-    .doc = "measures the kernel and moves nothing",
-    .source = "README",
-};
-static const sph_scheme scheme = {
-    .size = SIZE(sph_scheme),
-    .item = &scheme_item,
-    .kernel = "poly6",
-    .integrator = "kdk",
-    .cfl = 1,
-    .steps = SPH_LIST(steps),
-};
-
 static sph_status init(const sph_host *host)
 {
     sph_status status = host->register_item(host, SPH_KIND_KERNEL, &poly6);
@@ -158,8 +141,6 @@ static sph_status init(const sph_host *host)
         status = host->register_item(host, SPH_KIND_KERNEL, &gauss);
     if (status == SPH_OK)
         status = host->register_item(host, SPH_KIND_FUNCTION, &moments);
-    if (status == SPH_OK)
-        status = host->register_item(host, SPH_KIND_SCHEME, &scheme);
     return status;
 }
 

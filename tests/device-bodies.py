@@ -13,7 +13,7 @@ WRONG = os.path.join(BUILD, "tests/check/.libs/wrong_device.so")
 
 OURS = {"gsph-density": ("ok", '"density.body.h" gives the native numbers in 1, 2, 3 dimensions'),
         "gsph-gradients": ("ok", '"gradients.body.h" gives the native numbers in 1, 2, 3 dimensions'),
-        "gsph-rates": ("note", "no device body")}
+        "gsph-rates": ("ok", '"rates.body.h" gives the native numbers in 1, 2, 3 dimensions')}
 DIFFER = 'the device body "device.body.h" and the native one differ in '
 THEIRS = {"every-word": ("ok", '"device.body.h" gives the native numbers in 1, 2, 3 dimensions'),
           "with-self": ("ok", '"device.body.h" gives the native numbers in 1, 2, 3 dimensions'),
@@ -73,7 +73,7 @@ def embedded(library, *files):
 
 
 embedded(os.path.join(BUILD, "plugins/.libs/gsph.so"), "plugins/gsph/density.body.h",
-         "plugins/gsph/gradients.body.h")
+         "plugins/gsph/gradients.body.h", "plugins/gsph/rates.body.h", "plugins/gsph/rates.macros.h")
 embedded(WRONG, "tests/check/device.body.h", "tests/check/device.macros.h")
 there = compared()
 sys.exit(1 if missed else 0 if there else 77)

@@ -82,7 +82,7 @@ static bool live(const struct subject *s, int dim)
 
 void check_life(const struct subject *s)
 {
-    const sph_life *life = subject_life(s->entry);
+    const sph_life *life = entry_life(s->entry);
     struct use use;
     struct error e = {0};
     char dims[40];

@@ -44,20 +44,6 @@ void stage(const struct subject *s, const char *format, ...)
     va_end(list);
 }
 
-const sph_life *subject_life(const struct entry *x)
-{
-    switch (x->kind) {
-    case KIND_FUNCTION:
-        return entry_function(x)->life;
-    case KIND_EOS:
-        return entry_eos(x)->life;
-    case KIND_EXACT:
-        return entry_exact(x)->life;
-    default:
-        return NULL;
-    }
-}
-
 bool subject_works_in(const struct subject *s, int dim)
 {
     return s->entry->item->dims >> dim & 1u;
@@ -137,7 +123,7 @@ int subject_configure(const struct subject *s, struct use *u, struct error *e)
     const sph_item *item = s->entry->item;
     const sph_param *p = item->params.data;
 
-    if (use_init(u, s->entry, item, subject_life(s->entry), e))
+    if (use_init(u, s->entry, item, entry_life(s->entry), e))
         return -1;
     for (uint32_t i = 0; i < item->params.count; i++)
         if (set_one(s, u, &p[i], e)) {

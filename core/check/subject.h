@@ -41,8 +41,6 @@ void say(const struct subject *s, enum verdict v, const char *format, ...)
 /* What is done now, as "run in 2 dimensions, 1000 particles". */
 void stage(const struct subject *s, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
-/* The life of the item, or NULL. */
-const sph_life *subject_life(const struct entry *x);
 bool subject_works_in(const struct subject *s, int dim);
 /* "1, 2, 3 dimensions" */
 const char *subject_dims(const struct subject *s, char *out, size_t size);

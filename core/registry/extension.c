@@ -92,20 +92,6 @@ static int declare_population(struct registry *r, const char *function, const sp
     return error_prefix(e, "population of \"%s\"", function);
 }
 
-static const sph_life *life_of(const struct entry *x)
-{
-    switch (x->kind) {
-    case KIND_FUNCTION:
-        return entry_function(x)->life;
-    case KIND_EOS:
-        return entry_eos(x)->life;
-    case KIND_EXACT:
-        return entry_exact(x)->life;
-    default:
-        return NULL;
-    }
-}
-
 static int declare_state(struct registry *r, enum kind kind, const char *name, const sph_state *in,
                          struct error *e)
 {
@@ -118,7 +104,7 @@ static int declare_state(struct registry *r, enum kind kind, const char *name, c
            : (error_set(e, EXIT_REFUSED, "the descriptor is NULL"), NULL);
     if (!s)
         return error_prefix(e, "state of \"%s\"", name);
-    if (!life_of(x) || !life_of(x)->create)
+    if (!entry_life(x) || !entry_life(x)->create)
         error_set(e, EXIT_REFUSED, "the item has no life, so no state");
     else if (!s->save || !s->restore)
         error_set(e, EXIT_REFUSED, "%s is NULL", s->save ? "restore" : "save");

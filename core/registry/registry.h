@@ -103,6 +103,15 @@ static inline const sph_exact *entry_exact(const struct entry *x)
     return (const sph_exact *)x->descriptor;
 }
 
+/* The life of an item, or NULL if it or its kind has none. */
+static inline const sph_life *entry_life(const struct entry *x)
+{
+    return x->kind == KIND_FUNCTION ? entry_function(x)->life
+           : x->kind == KIND_EOS    ? entry_eos(x)->life
+           : x->kind == KIND_EXACT  ? entry_exact(x)->life
+                                    : NULL;
+}
+
 /* Element i of a list of the ABI, whatever its stride. */
 static inline const void *list_at(const sph_list *l, uint32_t i)
 {

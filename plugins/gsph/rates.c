@@ -41,23 +41,7 @@ static const sph_prop props[] = {
              0.0),
 };
 
-/* The limited increment of a quantity from j to i, from its step over the pair and what one side's gradient gives
- * for it. minmod: the smaller of the two. van-leer: harmonic mean of the step and of the one beyond that
- * the gradient tells of. cap: most that it may be. */
-#define GSPH_LIMIT(step, slope, cap)                                                               \
-    sph_max(sph_min(limiter < 1.5 ? GSPH_MINMOD(step, slope)                                       \
-                                  : GSPH_VAN_LEER(step, (2.0 * (slope) - (step))),                 \
-                    cap),                                                                          \
-            -(cap))
-#define GSPH_MINMOD(a, b)                                                                          \
-    sph_select((a) * (b) > sph_num(0.0), sph_select(sph_abs(a) < sph_abs(b), (a), (b)),            \
-               sph_num(0.0))
-#define GSPH_VAN_LEER(a, b)                                                                        \
-    sph_select((a) * (b) > sph_num(0.0), 2.0 * (a) * (b) / ((a) + (b)), sph_num(0.0))
-/* Most speeds of sound that the velocity may be changed by. */
-#define GSPH_MOST_SOUND 5.0
-/* Iterations of the exact solver: the worst of 200 000 random problems missed p* by 2e-5. */
-#define GSPH_NEWTON 4
+#include "rates.macros.h"
 
 #define SPH_LOOP sweep
 #define SPH_LOOP_I(S, V_, M_)                                                                      \
@@ -68,6 +52,8 @@ static const sph_prop props[] = {
 #define SPH_LOOP_PARAM(P_) P_(riemann, RIEMANN) P_(limiter, LIMITER) P_(beta, BETA)
 #define SPH_LOOP_REACH SPH_SYMMETRIC
 #define SPH_LOOP_BODY "rates.body.h"
+#define SPH_LOOP_DEVICE rates_device
+#define SPH_LOOP_PRELUDE "rates.macros.h"
 #include <sph/pair-loop.h>
 
 /* v here is the predicted velocity v + dt a (or its half, at mid-step), made with the acceleration of the last
@@ -124,6 +110,7 @@ const sph_function gsph_rates = {
     .after = finish,
     .reach = SPH_SYMMETRIC,
     .reach_scale = 1.0,
+    .device = &rates_device,
     .rates = SPH_LIST(rates),
     .reductions = SPH_LIST(reductions),
 };

@@ -1,6 +1,7 @@
-/* domain/ranks.c -- MPI begun and ended. */
+/* domain/ranks.c -- MPI begun and ended, and errors that all ranks share. */
 #include "domain/ranks.h"
 #include "config.h"
+#include <limits.h>
 #include <stdlib.h>
 
 #if SPH_HAVE_MPI
@@ -14,20 +15,56 @@ static int launched(void)
 
 int ranks_begin(int *argc, char ***argv, struct error *e)
 {
-    int size = 1, rank = 0;
     if (!launched())
         return 0;
     if (MPI_Init(argc, argv) != MPI_SUCCESS)
         return error_set(e, EXIT_RUN, "MPI does not start");
-    MPI_Comm_size(MPI_COMM_WORLD, &size);
-    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    if (size > 1) {
-        error_set(e, EXIT_USAGE, "this version runs on one rank, not on %d; use --threads", size);
-        if (rank > 0)
-            e->text[0] = '\0'; /* the first one says it */
-        return -1;
-    }
     return 0;
+}
+
+void ranks_count(int *rank, int *size)
+{
+    int begun = 0, ended = 0;
+    *rank = 0;
+    *size = 1;
+    MPI_Initialized(&begun);
+    MPI_Finalized(&ended);
+    if (!begun || ended)
+        return;
+    MPI_Comm_rank(MPI_COMM_WORLD, rank);
+    MPI_Comm_size(MPI_COMM_WORLD, size);
+}
+
+int ranks_agree(int status, struct error *e)
+{
+    int rank, size, failed = status ? 1 : 0, number = 0, speaker = 0;
+    ranks_count(&rank, &size);
+    if (size == 1)
+        return status;
+    int place = failed ? rank : INT_MAX;
+    MPI_Allreduce(&failed, &number, 1, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
+    MPI_Allreduce(&place, &speaker, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
+    if (number == 0)
+        return 0;
+    int code = e->exit_code;
+    MPI_Bcast(&code, 1, MPI_INT, speaker, MPI_COMM_WORLD);
+    if (rank != speaker)
+        *e = (struct error){code, ""};
+    else if (number < size)
+        error_prefix(e, "rank %d", rank); /* what all ranks meet needs no name */
+    return -1;
+}
+
+int ranks_only_one(struct error *e)
+{
+    int rank, size;
+    ranks_count(&rank, &size);
+    if (size == 1)
+        return 0;
+    error_set(e, EXIT_USAGE, "this version runs on one rank, not on %d; use --threads", size);
+    if (rank > 0)
+        e->text[0] = '\0'; /* the first one says it */
+    return -1;
 }
 
 void ranks_end(void)
@@ -45,6 +82,24 @@ int ranks_begin(int *argc, char ***argv, struct error *e)
 {
     (void)argc;
     (void)argv;
+    (void)e;
+    return 0;
+}
+
+void ranks_count(int *rank, int *size)
+{
+    *rank = 0;
+    *size = 1;
+}
+
+int ranks_agree(int status, struct error *e)
+{
+    (void)e;
+    return status;
+}
+
+int ranks_only_one(struct error *e)
+{
     (void)e;
     return 0;
 }

@@ -1,12 +1,23 @@
-/* domain/ranks.h -- MPI begun and ended. This version runs on one rank: more are refused, by every rank, with
- * one sentence. Without MPI in the build there is one rank, always. */
+/* domain/ranks.h -- MPI begun and ended, and errors that all ranks share. This version runs on
+ * one rank: more are refused, by every rank, with one sentence, after they have compared their
+ * plugins. Without MPI in the build there is one rank, always. */
 #ifndef DOMAIN_RANKS_H
 #define DOMAIN_RANKS_H
 
 #include "base/error.h"
 
-/* Starts MPI if the program was started by mpirun (alone it needs none, and starts faster without). */
+/* Starts MPI if the program was started by mpirun (alone it needs none, and starts faster
+ * without). */
 int ranks_begin(int *argc, char ***argv, struct error *e);
 void ranks_end(void);
+
+/* This rank and how many there are: 0 of 1 where MPI was not begun. */
+void ranks_count(int *rank, int *size);
+/* All ranks call it. If `status` is not 0 on any, every rank fails, with the exit code of the
+ * lowest that did; that one keeps its sentence, with its rank before it unless all failed; the
+ * others' text is empty. */
+int ranks_agree(int status, struct error *e);
+/* Fails (EXIT_USAGE) on more than one. */
+int ranks_only_one(struct error *e);
 
 #endif

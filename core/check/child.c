@@ -135,12 +135,13 @@ static int say_end(struct listener *l, const struct subject *s, int status, bool
 static int say_output(struct listener *l, int output, struct error *e)
 {
     char text[4096], first[200];
-    ssize_t n = pread(output, text, sizeof(text), 0);
+    ssize_t n = pread(output, text, sizeof(text) - 1, 0);
     off_t at = 0;
 
     if (n <= 0)
         return 0;
-    snprintf(first, sizeof(first), "%.*s", (int)strcspn(text, "\n") < 150 ? (int)n : 150, text);
+    text[n] = '\0';
+    snprintf(first, sizeof(first), "%.150s", text);
     first[strcspn(first, "\n")] = '\0';
     for (; !l->finished && (n = pread(output, text, sizeof(text), at)) > 0; at += n)
         fwrite(text, 1, (size_t)n, stderr);

@@ -77,6 +77,15 @@ static int configure(struct plan *plan, struct use *use, const struct step *s, s
     return use_set_all(use, d, s->params, e);
 }
 
+/* What the plugin, or a parameter that is missing, has against it, with the place that asks for it. */
+static int create(struct plan *plan, struct use *use, const cJSON *node, struct error *e)
+{
+    struct error why = {0};
+    if (use_create(use, plan->registry, plan->dim, &why) == 0)
+        return 0;
+    return document_fail(plan->scene->doc, node, e, "%s", why.text);
+}
+
 static int configure_eos(struct plan *plan, struct use *use, const struct scene_material *m,
                          struct error *e)
 {
@@ -89,10 +98,7 @@ static int configure_eos(struct plan *plan, struct use *use, const struct scene_
         return -1;
     if (use_set_all(use, d, m->eos_params, e))
         return -1;
-    struct error why = {0};
-    if (config_check(&use->config, &why))
-        return document_fail(d, m->eos_node, e, "%s", why.text);
-    return use_create(use, plan->registry, plan->dim, e);
+    return create(plan, use, m->eos_node, e);
 }
 
 static const struct scene_material *material_of(const struct plan *plan, size_t array)
@@ -233,7 +239,7 @@ static int bind_function(struct plan *plan, const struct step *s, size_t array, 
                              "%s does not work in %d dimensions", s->name, plan->dim);
     struct pass *p = new_pass(plan, s, array, e);
     if (!p || use_init(&p->use, entry, f->item, f->life, e) || configure(plan, &p->use, s, e) ||
-        use_create(&p->use, plan->registry, plan->dim, e))
+        create(plan, &p->use, s->node ? s->node : plan->scene->scheme.node, e))
         return -1;
     p->function = f;
     p->shape = f->shape;

@@ -89,35 +89,50 @@ static int check_scheme_members(const struct plan *plan, struct error *e)
         }
         char near[512];
         if (!known)
-            return document_fail(plan->scene->doc, member, e,
-                                 "the scheme \"%s\" has no parameter \"%s\"%s",
-                                 plan->scheme_name ? plan->scheme_name : "", member->string,
+            return document_fail(plan->scene->doc, member, e, "%s%s%s has no parameter \"%s\"%s",
+                                 plan->scheme_name ? "the scheme \"" : "the recipe",
+                                 plan->scheme_name ? plan->scheme_name : "",
+                                 plan->scheme_name ? "\"" : "", member->string,
                                  text_suggest(near, sizeof near, member->string, name, n));
     }
     return 0;
 }
 
-/* A boundary condition's member that none of its steps declares, likewise. */
+/* The parameters of a function by name, behind the n that are in `name`; true: `member` is one. */
+static bool declares(const struct plan *plan, const char *function, const char *member,
+                     const char **name, size_t most, size_t *n)
+{
+    const struct entry *x = registry_find(plan->registry, KIND_FUNCTION, function);
+    bool found = false;
+    for (uint32_t k = 0; x && k < x->item->params.count; k++) {
+        const char *own = ((const sph_param *)list_at(&x->item->params, k))->name;
+        found = found || strcmp(own, member) == 0;
+        if (*n < most)
+            name[(*n)++] = own;
+    }
+    return found;
+}
+
+/* A boundary condition's member that none of its steps declares, likewise: neither of those that it
+ * brings, which an edit may have taken out, nor of those that an edit has put into their place. */
 static int check_boundary_members(const struct plan *plan, const struct scene_boundary *b,
                                   struct error *e)
 {
+    const sph_list *steps =
+        &entry_boundary(registry_find(plan->registry, KIND_BOUNDARY, b->name))->steps;
     const cJSON *member;
     cJSON_ArrayForEach(member, b->params)
     {
         const char *name[256];
         size_t n = 0;
         bool known = false;
-        for (size_t i = 0; i < plan->n_step; i++) {
-            const struct entry *x =
-                plan->step[i].node == b->node && plan->step[i].kind == KIND_FUNCTION
-                    ? registry_find(plan->registry, KIND_FUNCTION, plan->step[i].name)
-                    : NULL;
-            for (uint32_t k = 0; x && k < x->item->params.count && n < 256; k++) {
-                name[n] = ((const sph_param *)list_at(&x->item->params, k))->name;
-                known = known || strcmp(name[n], member->string) == 0;
-                n++;
-            }
-        }
+        for (uint32_t i = 0; i < steps->count; i++)
+            known = declares(plan, ((const sph_step *)list_at(steps, i))->name, member->string,
+                             name, 256, &n) ||
+                    known;
+        for (size_t i = 0; i < plan->n_step; i++)
+            if (plan->step[i].shared == b->params && plan->step[i].node != b->node)
+                known = declares(plan, plan->step[i].name, member->string, name, 256, &n) || known;
         char near[512];
         if (!known)
             return document_fail(plan->scene->doc, member, e,
@@ -158,10 +173,8 @@ static int bind_exact(struct plan *plan, struct error *e)
         if (use_set_all(u, s->doc, c->params, e))
             return -1;
         struct error why = {0};
-        if (config_check(&u->config, &why))
+        if (use_create(u, plan->registry, plan->dim, &why))
             return document_fail(s->doc, c->node, e, "%s", why.text);
-        if (use_create(u, plan->registry, plan->dim, e))
-            return -1;
     }
     return 0;
 }

@@ -123,11 +123,14 @@ static int recipe_edit(struct plan *plan, const struct scene_edit *edit, struct 
 {
     size_t index = plan->n_step;
     enum moment moment = MOMENT_EVALUATE;
+    struct step old = {0}; /* whose arrays and parameters a replacement takes over */
     if (edit->kind != EDIT_APPEND) {
         int at = edit_target(plan, edit, e);
         if (at < 0)
             return -1;
         moment = plan->step[at].moment;
+        if (edit->kind == EDIT_REPLACE)
+            old = plan->step[at];
         index = (size_t)at + (edit->kind == EDIT_INSERT_AFTER ? 1u : 0u);
     }
     if (edit->kind == EDIT_DELETE || edit->kind == EDIT_REPLACE)
@@ -156,10 +159,11 @@ static int recipe_edit(struct plan *plan, const struct scene_edit *edit, struct 
     }
     s->node = edit->node;
     s->params = edit->params;
-    s->to = edit->to;
-    s->n_to = edit->n_to;
-    s->from = edit->from;
-    s->n_from = edit->n_from;
+    s->shared = old.shared;
+    s->to = edit->n_to ? edit->to : old.to;
+    s->n_to = edit->n_to ? edit->n_to : old.n_to;
+    s->from = edit->n_from ? edit->from : old.from;
+    s->n_from = edit->n_from ? edit->n_from : old.n_from;
     s->operation = edit->operation;
     s->of = edit->of;
     s->expression = edit->function ? NULL : edit->expression;

@@ -52,7 +52,9 @@ static int read_object(struct use_table *t, const struct document *d, const cJSO
     t->read.n = (size_t)cJSON_GetArraySize(member->child);
     cJSON_ArrayForEach(list, member)
     {
-        if (!cJSON_IsArray(list) || (size_t)cJSON_GetArraySize(list) != t->read.n)
+        if (!cJSON_IsArray(list))
+            return document_fail(d, list, e, "a column of a table is an array of numbers");
+        if ((size_t)cJSON_GetArraySize(list) != t->read.n)
             return document_fail(d, list, e,
                                  "a column of a table is an array of numbers, as long as the "
                                  "others (%zu)",

@@ -69,7 +69,7 @@ int use_set_all(struct use *u, const struct document *d, const cJSON *members, s
 int use_create(struct use *u, struct registry *r, int dim, struct error *e)
 {
     if (config_check(&u->config, e))
-        return error_prefix(e, "%s", u->item->name);
+        return -1;
     if (!u->life || !u->life->create)
         return 0;
     sph_status status = u->life->create(&r->host, &u->config, (uint32_t)dim, &u->state);

@@ -67,6 +67,21 @@ static int check_count(const sph_function *f, const char *field, const char *nam
     return 0;
 }
 
+static int check_born(const sph_list *props, struct error *e)
+{
+    const sph_prop *p = props->data;
+
+    if (check_props(props, "born_props", e))
+        return -1;
+    for (uint32_t i = 0; i < props->count; i++)
+        if (p[i].access & SPH_SRC_READ)
+            return error_set(e, EXIT_REFUSED,
+                             "born_props: \"%s\" is read of sources, but new "
+                             "particles have none",
+                             p[i].name);
+    return 0;
+}
+
 static int declare_population(struct registry *r, const char *function, const sph_population *in,
                               struct error *e)
 {
@@ -85,7 +100,7 @@ static int declare_population(struct registry *r, const char *function, const sp
         error_set(e, EXIT_REFUSED, "born is set, but create names no property");
     else if (!check_count(entry_function(x), "remove", p->remove, e) &&
              !check_count(entry_function(x), "create", p->create, e) &&
-             !check_props(&p->born_props, "born_props", e)) {
+             !check_born(&p->born_props, e)) {
         x->population = p;
         return 0;
     }
@@ -134,7 +149,7 @@ static sph_status state_declare(const sph_host *host, const char *kind, const ch
 
     if (!r || !registry_is_loading(r))
         return SPH_E_INVALID;
-    for (int k = 0; kind && k < KIND_COUNT; k++)
+    for (int k = 0; check_is_text(kind) && k < KIND_COUNT; k++)
         if (strcmp(kind, kind_id[k]) == 0)
             return declare_state(r, (enum kind)k, name, s, &e) ? registry_refuse(r, &e) : SPH_OK;
     error_set(&e, EXIT_REFUSED, "state: kind \"%.64s\" is unknown to this sph",

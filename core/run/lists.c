@@ -191,8 +191,11 @@ static int make_lists(struct run *r, bool counted, struct error *e)
 
 int run_lists(struct run *r, bool within, struct error *e)
 {
-    if (!asks(r->plan))
+    if (!asks(r->plan)) {
+        for (size_t a = 0; !within && a < r->plan->n_array; a++)
+            sides_wrap(&r->plan->scene->box, &r->plan->array[a].p);
         return 0;
+    }
     double begin = omp_get_wtime();
     int status = 0;
     if (!still_right(r)) {

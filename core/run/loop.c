@@ -162,7 +162,8 @@ static int choose_dt(struct loop *l, double *dt, struct error *e)
                          (unsigned long long)r->step, r->time);
     full = fmin(fmin(full, l->scene->time.dt_max), r->proposed);
     r->proposed = INFINITY;
-    if (!(full < INFINITY) && full > 0.0)
+    /* Later on nothing may be left that bounds it, as when the last particle has gone: it grows on. */
+    if (!(full < INFINITY) && r->step == 0)
         return error_set(
             e, EXIT_USAGE,
             "no function of the scene bounds the time step: give \"dt\" or \"dt_max\" in \"time\"");
@@ -269,9 +270,20 @@ static int steps(struct loop *l, struct error *e)
     return write_snapshot(l, e);
 }
 
+/* Particles in the picture: they may all have been removed, and the run is good all the same. */
+static uint64_t particles_drawn(const struct loop *l)
+{
+    const struct plan *plan = l->run.plan;
+    const char *only = l->scene->output.picture.array;
+    uint64_t n = 0;
+    for (size_t a = 0; a < plan->n_array; a++)
+        n += only && strcmp(only, plan->array[a].p.name) != 0 ? 0 : plan->array[a].p.n;
+    return n;
+}
+
 static int draw(struct loop *l, struct error *e)
 {
-    if (!l->scene->output.picture.wanted || l->snapshots == 0)
+    if (!l->scene->output.picture.wanted || l->snapshots == 0 || particles_drawn(l) == 0)
         return 0;
     char name[64];
     snprintf(name, sizeof name, "snapshot_%04llu.vtkhdf", (unsigned long long)l->snapshots - 1);

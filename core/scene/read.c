@@ -163,8 +163,8 @@ static int read_row(struct csv *c)
         c->t->column[k++].value[c->t->n] = value;
     }
     if (k < c->t->n_column)
-        return error_set(c->e, EXIT_USAGE, "%s:%zu: %zu cells for %zu columns", c->path, c->number,
-                         k, c->t->n_column);
+        return error_set(c->e, EXIT_USAGE, "%s:%zu: %zu cell%s for %zu columns", c->path, c->number,
+                         k, k == 1 ? "" : "s", c->t->n_column);
     c->t->n++;
     return 0;
 }
@@ -204,7 +204,7 @@ int table_read(struct table *t, const char *path, const char *array, struct erro
     if (stat(path, &about) < 0)
         return error_set(e, EXIT_USAGE, "%s: cannot be read: %s", path, strerror(errno));
     if (S_ISDIR(about.st_mode))
-        return error_set(e, EXIT_USAGE, "%s: is a folder; give a file of particles", path);
+        return error_set(e, EXIT_USAGE, "%s: is a folder; give a file", path);
     if (is_hdf5(path))
         status = table_read_hdf5(t, path, array, e);
     else if (array)

@@ -19,6 +19,9 @@ int scene_arrays(struct scene *s, const cJSON *node, const char *key, const char
         names[i] = s->array[i].name;
     const cJSON *list = json_get(node, key);
     const cJSON *item = cJSON_IsArray(list) ? list->child : list;
+    if (list && *n == 0)
+        return document_fail(s->doc, list, e,
+                             "no array is named; leave \"%s\" out where all are meant", key);
     for (size_t k = 0; k < *n; k++, item = item->next) {
         size_t i = 0;
         while (i < s->n_array && strcmp(s->array[i].name, (*out)[k]) != 0)

@@ -20,7 +20,8 @@ typedef struct sph_population {
     const char *remove; /* not 0: this particle is taken away */
     const char *create; /* k > 0: k new particles, made as copies of this one in every property but
                          * `id`. They are made before any is taken away, so that a particle may be
-                         * replaced by its copies. */
+                         * replaced by its copies. Several functions act in the order of the recipe:
+                         * copies carry what later ones have written for their parent. */
     /* Works on the new particles, in the columns born_props. There `create` holds 1 ... k, the
      * number of the copy among its siblings, and is 0 again afterwards. batch->first is any number
      * here, not a multiple of the lanes. NULL: they stay as copied. [worker] */

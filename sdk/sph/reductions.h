@@ -14,7 +14,7 @@ typedef struct sph_reductions {
     uint32_t size, reserved;
     /* What reduction `name` of `function` came to when its pass last ran, in the property's unit; a
      * step that stands later in the recipe gets this evaluation's value, an earlier one the last
-     * evaluation's. NaN before the first, where there is no such reduction in this run, and without
+     * evaluation's. Over no particles a sum is 0, a minimum inf, a maximum -inf. NaN before the first, where there is no such reduction in this run, and without
      * a run (batch->run NULL). [any] */
     double (*value)(const sph_batch *, const char *function, const char *name);
 } sph_reductions;

@@ -4,6 +4,7 @@
 #include "config.h"
 
 #include "rig.h"
+#include "run/loop.h"
 #include "run/run.h"
 #include "scratch.h"
 
@@ -122,6 +123,25 @@ ITEM(push_item, "push", SPH_NO_LIST, SPH_LIST(follow_props));
 static const sph_function push = {
     .size = SIZE(sph_function), .shape = SPH_POINT, .item = &push_item, .run = push_run};
 
+/* "bound": a bound on the time step in a property, so none where no particles are. */
+static sph_status bound_run(const sph_batch *b)
+{
+    for (uint64_t i = b->first; i < b->first + b->count; i++)
+        real(b, 0)[i] = 0.1;
+    return SPH_OK;
+}
+static const sph_prop bound_props[] = {
+    SPH_PROP("bound", "s", "", SPH_SCALAR, SPH_DST_WRITE, 0),
+};
+ITEM(bound_item, "bound", SPH_NO_LIST, SPH_LIST(bound_props));
+static const sph_reduction bound_reductions[] = {
+    SPH_REDUCTION("dt", "bound", SPH_REDUCE_MIN, SPH_USE_TIME_STEP)};
+static const sph_function bound = {.size = SIZE(sph_function),
+                                   .shape = SPH_POINT,
+                                   .item = &bound_item,
+                                   .run = bound_run,
+                                   .reductions = SPH_LIST(bound_reductions)};
+
 /* -- "gate": particles leave beyond `end`, and as many come in at 0 -------------------------------- */
 
 static sph_status gate_run(const sph_batch *b)
@@ -213,6 +233,7 @@ static const sph_boundary walled = {
     .size = SIZE(sph_boundary), .item = &wall_boundary_item, .steps = SPH_LIST(wall_steps)};
 
 static sph_state follow_state;
+static const char *state_kind;
 static sph_status declare_status;
 
 static sph_status declare(const sph_host *host)
@@ -225,12 +246,12 @@ static sph_status declare(const sph_host *host)
     assert_null(host->extension(host, NULL));
     declare_status = population->declare(host, "gate", &gate_population);
     if (declare_status == SPH_OK)
-        declare_status = state->declare(host, SPH_KIND_FUNCTION, "follow", &follow_state);
+        declare_status = state->declare(host, state_kind, "follow", &follow_state);
     return declare_status;
 }
 
 static const struct rig_items items = {
-    .function = {&follow, &push, &gate, &first, &second, &wall, &lid, NULL},
+    .function = {&follow, &push, &bound, &gate, &first, &second, &wall, &lid, NULL},
     .eos = {NULL},
     .scheme = {&scheme, &move, NULL},
     .boundary = {&walled, NULL},
@@ -261,6 +282,7 @@ static void defaults(void)
                                        .born = gate_born,
                                        .born_props = SPH_LIST(gate_born_props)};
     follow_state = (sph_state){SIZE(sph_state), 7, save, restore};
+    state_kind = SPH_KIND_FUNCTION;
     prepared = 0;
     last_seen = 0;
 }
@@ -311,6 +333,10 @@ static void tables(void **state)
     rig_close(&rig);
 
     rig_refused(&items, "path needs columns t and v", ONE("{'name':'move','path':{'t':[0]}}", ""));
+    rig_refused(&items, "/scheme/path/t: a column of a table is an array of numbers",
+                ONE("{'name':'move','path':{'t':5}}", ""));
+    rig_refused(&items, "/scheme: follow: path needs columns t and v",
+                ONE("{'name':'move','path':{'t':[0]}}", ""));
     rig_refused(&items, "as long as the others (2)",
                 ONE("{'name':'move','path':{'t':[0,1],'v':[1]}}", ""));
     rig_refused(&items, "a table holds numbers", ONE("{'name':'move','path':{'t':['a']}}", ""));
@@ -439,6 +465,50 @@ static void siblings_and_none(void **state)
                 ONE("{'name':'move','edit':[{'operation':'assignment','function':'gate'}]}", ""));
 }
 
+/* All particles leave: nothing bounds the time step any more and there is nothing to draw, and the
+ * run comes to its end all the same. */
+static void the_last_one_leaves(void **state)
+{
+    struct rig rig;
+    struct output out;
+    struct error e = {0};
+    const struct loop_options options = {
+        .scene_path = "scene.json", .until = NAN, .steps = UINT64_MAX, .threads = 1};
+
+    rig_open(&rig, &items,
+             ONE("{'name':'move','edit':[{'replace':'follow','with':'bound'},{'operation':"
+                 "'assignment','function':'gate','at':'finish','copies':0,'end':0.5}]}",
+                 ",'output':{'picture':{'field':'v'}}"));
+    assert_int_equal(output_open(&out, scratch_path(state, "out"), &e), 0);
+    if (loop_run(&rig.plan, &out, &options, &e))
+        fail_msg("%s", e.text);
+    assert_int_equal(rig.plan.array[0].p.n, 0);
+    output_close(&out);
+    rig_close(&rig);
+}
+
+/* Without pairs there are no lists, and particles come round all the same. */
+static void wrapped_without_lists(void **state)
+{
+    struct rig rig;
+    struct run run;
+    struct error e = {0};
+
+    (void)state;
+    rig_open(&rig, &items,
+             "{'dimensions':1,'domain':{'min':[0],'max':[1],'sides':{'x':'periodic'}},"
+             "'particles':{'row':{'fill':{'lattice':'square','count':10},'fields':{'rho':1,"
+             "'v':[1]}}},'scheme':'move','time':{'end':1}}");
+    begin(&run, &rig);
+    run.dt = 0.25;
+    for (int k = 0; k < 10; k++)
+        assert_int_equal(run_advance(&run, &e), 0);
+    for (size_t i = 0; i < 10; i++)
+        assert_true(rig_real(&rig, 0, "x", 0)[i] >= 0 && rig_real(&rig, 0, "x", 0)[i] <= 1);
+    run_free(&run);
+    rig_close(&rig);
+}
+
 static void refused(const char *text)
 {
     struct rig rig;
@@ -469,6 +539,9 @@ static void what_contradicts_itself_is_refused(void **state)
     gate_population.create = "nothing";
     refused("create is \"nothing\", which is not declared");
     defaults();
+    gate_population.born_props = (sph_list)SPH_LIST(touch_props);
+    refused("born_props: \"m\" is read of sources, but new particles have none");
+    defaults();
     gate_population.size = 12;
     refused("population of \"gate\": size of the descriptor is 12 bytes");
     defaults();
@@ -477,6 +550,9 @@ static void what_contradicts_itself_is_refused(void **state)
     defaults();
     follow_state.restore = NULL;
     refused("state of \"follow\": restore is NULL");
+    defaults();
+    state_kind = (const char *)(uintptr_t)8;
+    refused("state: kind \"?\" is unknown to this sph");
 }
 
 /* -- State ----------------------------------------------------------------------------------------- */
@@ -542,6 +618,35 @@ static void places_and_arrays(void **state)
                 SCENE("'plain'", ",'boundaries':[{'name':'wall'}]"));
 }
 
+/* What an edit puts in the place of a boundary condition's step acts where that did, with its
+ * parameters; what it takes out leaves the condition's parameters what they are. */
+static void edits_of_boundary_steps(void **state)
+{
+    struct rig rig;
+
+    (void)state;
+    rig_open(&rig, &items,
+             SCENE("{'name':'plain','edit':[{'replace':'lid','with':'second'},{'delete':'wall'}]}",
+                   ",'boundaries':[{'name':'walled','array':'rest','with':['row'],'end':7}]"));
+    const struct plan *plan = &rig.plan;
+    assert_int_equal(plan->n_pass, 7);
+    assert_string_equal(plan->pass[2].name, "second(rest)");
+    assert_true(plan->pass[2].use.config.value[0] == 7 && plan->pass[2].src[0].array == 0);
+    rig_close(&rig);
+
+    rig_open(&rig, &items,
+             SCENE("{'name':'plain','edit':[{'delete':'lid'},{'delete':'lid'},{'delete':'wall'},"
+                   "{'delete':'wall'}]}",
+                   ",'boundaries':[{'name':'walled','end':7}]"));
+    assert_int_equal(rig.plan.n_pass, 4);
+    rig_close(&rig);
+
+    rig_refused(&items, "/boundaries/0/array: no array is named",
+                SCENE("'plain'", ",'boundaries':[{'name':'walled','array':[]}]"));
+    rig_refused(&items, "/scheme/foo: the recipe has no parameter \"foo\"",
+                ONE("{'foo':1,'edit':[{'operation':'assignment','function':'push'}]}", ""));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -554,6 +659,9 @@ int main(void)
                                         scratch_teardown),
         cmocka_unit_test_setup_teardown(states, reset, scratch_teardown),
         cmocka_unit_test_setup_teardown(places_and_arrays, reset, scratch_teardown),
+        cmocka_unit_test_setup_teardown(the_last_one_leaves, reset, scratch_teardown),
+        cmocka_unit_test_setup_teardown(wrapped_without_lists, reset, scratch_teardown),
+        cmocka_unit_test_setup_teardown(edits_of_boundary_steps, reset, scratch_teardown),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

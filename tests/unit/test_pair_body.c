@@ -406,6 +406,14 @@ static void the_text(void **state)
     free(columns);
 }
 
+/* The leak sanitizer's tracer itself crashes on the threads of the OpenCL driver's compiler (seen with
+ * pocl 3.1): errors of addresses are still found here, leaks are not. */
+int __lsan_is_turned_off(void);
+int __lsan_is_turned_off(void)
+{
+    return 1;
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {

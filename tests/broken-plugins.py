@@ -118,6 +118,9 @@ refused("small struct", copy("small_struct"), "size of the plugin's descriptor i
 refused("huge struct", copy("huge_struct"), "size of the plugin's descriptor is 2147483647 bytes", "absurd")
 refused("NULL entry", copy("null_entry"), "its sph_plugin_entry returns NULL")
 refused("failing init", copy("failing_init"), "its init failed: the moon is not full")
+if not os.environ.get("SPH_SANITIZED"):  # which would tell it in its own words
+    refused("crashing init", copy("crashing_init"), "it crashed (segmentation fault) while it was being loaded")
+    os.remove(place("crashing_init.so"))  # the one after which the program does not go on
 refused("undefined symbol", copy("undefined_symbol"), "undefined symbol: nobody_has_this_function")
 refused("not ELF", put("not_elf.so", b"#!/bin/sh\necho hello\n"), "it is not an ELF file")
 refused("truncated", put("truncated.so", module("good")[:5000]), "it is truncated")

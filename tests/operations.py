@@ -2,6 +2,7 @@
 solutions that must not depend on how a problem is told: in one array or two, whole or as a mirrored half,
 shifted through a periodic side, or taken up from a snapshot."""
 import json
+import os
 
 import numpy
 
@@ -129,6 +130,18 @@ result = scenes.run(with_edit(sod, {"delete": "gsph-gradients"}), "--steps", "1"
 expect("gradients deleted", result.code == 2 and "nothing gives the initial" in result.stderr, result.stderr)
 result = scenes.run(with_edit(sod, {"operation": "integration", "function": "gsph-density", "of": "rho"}))
 expect("no integration", result.code == 2 and "declares no rate of" in result.stderr, result.stderr)
+
+# A function that sets a rate anew which another has just set: the plan warns.
+for scene, notes in ((with_edit(sod, {"insert": "gsph-rates", "after": "gsph-rates"}), 1), (sod, 0)):
+    told = scenes.command("plan", scenes.write(scene)).stdout
+    expect("rates set twice", told.count('note: gsph-rates(fluid) begins "du" anew;') == notes, told)
+    expect("lines of 80 columns", max(map(len, told.splitlines())) <= 80, told)
+
+# The path of a plugin is relative to the scene, not to where sph is started.
+kernels = os.path.join(os.environ["SPH_PLUGIN_PATH"], "kernels.so")
+os.symlink(kernels, os.path.join(scenes.scratch.name, "kernels.so"))
+result = scenes.run(changed(sod, plugins=["./kernels.so", *sod["plugins"][1:]]), "--steps", "1")
+expect("a plugin beside the scene", sod["plugins"][0] == "kernels" and result.code == 0, result.stderr)
 
 # Sod's tube in two arrays, which see each other through all pairs.
 one = scenes.good(sod, "--steps", "100").last()

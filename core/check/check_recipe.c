@@ -86,5 +86,6 @@ void check_recipe(const struct subject *s)
                 scheme->integrator);
     }
     if (!missing)
-        say(s, VERDICT_OK, "%u steps, and all that they name is there", steps->count);
+        say(s, VERDICT_OK, "%u step%s, and all that %s there", steps->count,
+            steps->count == 1 ? "" : "s", steps->count == 1 ? "it names is" : "they name is");
 }

@@ -4,6 +4,7 @@
 
 #include "base/text.h"
 #include "registry/check.h"
+#include "scene/json.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -99,21 +100,44 @@ static double parsed(const struct setting *s, const char **word)
     return *word ? NAN : number;
 }
 
+/* A table, as a scene gives it: the name of a file, or an object of columns. */
+static int set_table(struct use *u, const struct setting *s, struct error *e)
+{
+    struct document d;
+
+    if (document_parse(&d, "--set", "{}", 2, e))
+        return -1;
+    int status = document_set(&d, s->argument, e);
+    if (!status)
+        status = use_set_table(u, &d, json_get(json_get(d.root, s->item), s->name), e);
+    document_free(&d);
+    return status;
+}
+
+static int set_chosen(struct use *u, const sph_param *p, const struct setting *s, struct error *e)
+{
+    const char *word;
+    const double number = parsed(s, &word);
+
+    if (p->type == SPH_PARAM_TABLE)
+        return set_table(u, s, e);
+    if (config_set(&u->config, p->name, number, word, e))
+        return error_prefix(e, "--set %s", s->argument);
+    return 0;
+}
+
 static int set_one(const struct subject *s, struct use *u, const sph_param *p, struct error *e)
 {
     const struct setting *chosen = subject_setting(s, p->name);
-    const char *word;
 
-    if (chosen) {
-        const double number = parsed(chosen, &word);
-        if (config_set(&u->config, p->name, number, word, e))
-            return error_prefix(e, "--set %s", chosen->argument);
-        return 0;
-    }
+    if (chosen)
+        return set_chosen(u, p, chosen, e);
     if (!isnan(p->def))
         return 0;
     if (p->type == SPH_PARAM_TABLE)
-        return error_set(e, EXIT_USAGE, "parameter %s is a table without a default", p->name);
+        return error_set(e, EXIT_USAGE,
+                         "parameter %s is a table without a default (--set %s.%s=FILE gives one)",
+                         p->name, u->item->name, p->name);
     u->config.value[p - (const sph_param *)u->item->params.data] = subject_invented(p);
     return 0;
 }
@@ -156,16 +180,15 @@ int setting_parse(struct setting *out, const char *argument, struct error *e)
     return 0;
 }
 
-static int check_value(const struct entry *x, const struct setting *setting, struct error *e)
+static int check_value(const struct entry *x, const sph_param *p, const struct setting *setting,
+                       struct error *e)
 {
-    struct sph_config c;
-    const char *word;
-    const double number = parsed(setting, &word);
-    int status = config_init(&c, x->item, e);
+    struct use u;
 
-    if (!status && config_set(&c, setting->name, number, word, e))
-        status = error_prefix(e, "--set %s", setting->argument);
-    config_fini(&c);
+    if (use_init(&u, x, x->item, NULL, e))
+        return -1;
+    int status = set_chosen(&u, p, setting, e);
+    use_fini(&u, NULL);
     return status;
 }
 
@@ -181,7 +204,7 @@ static int check_setting(const struct entry *x, const struct setting *setting, s
         if (n < 64)
             known[n++] = p[i].name;
         if (strcmp(p[i].name, setting->name) == 0)
-            return check_value(x, setting, e);
+            return check_value(x, &p[i], setting, e);
     }
     for (uint32_t i = 0; i < x->item->props.count; i++) {
         if (n < 64)

@@ -37,13 +37,13 @@ static int help(void)
     puts("Usage: sph [run] SCENE.json [OPTION...]\n"
          "  or:  sph COMMAND [OPTION...] [ARGUMENT...]\n"
          "Smoothed particle hydrodynamics: a scene names plugins, materials and shapes;\n"
-         "sph runs it on threads, ranks (under mpirun) or an OpenCL device.\n"
+         "sph runs it on the threads of one process, with the same results for any number.\n"
          "\n"
          "Commands:");
     for (size_t i = 0; i < N_COMMANDS; i++)
         printf("  %-10s %s\n", commands[i].name, commands[i].doc);
     puts("\n"
-         "  -?, --help      this text; `sph COMMAND --help' tells the options of a command\n"
+         "  -?, --help      this text; `sph COMMAND --help' tells a command's options\n"
          "  -V, --version   version of the program and of its plugin ABI\n"
          "\n"
          "Plugins are looked for in SPH_PLUGIN_PATH, in ~/.local/share/sph and where sph\n"

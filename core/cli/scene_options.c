@@ -3,6 +3,8 @@
 #include "cli/scene_options.h"
 #include "domain/ranks.h"
 #include "domain/same_plugins.h"
+#include <stdlib.h>
+#include <string.h>
 
 enum { KEY_LOAD = 'l', KEY_SET = 's' };
 
@@ -43,6 +45,23 @@ static error_t parse(int key, char *arg, struct argp_state *state)
 
 const struct argp scene_argp = {.options = options, .parser = parse};
 
+/* A plugin that the scene names: a path is relative to the scene, as those of its other files are;
+ * a name may have come in by --load, from wherever its file stands. */
+static int load_named(struct loaded *l, const char *plugin, struct error *e)
+{
+    for (size_t i = 0; i < l->registry.n_plugin; i++)
+        if (strcmp(l->registry.plugin[i].name, plugin) == 0)
+            return 0;
+    if (!strchr(plugin, '/'))
+        return loader_load(&l->registry, plugin, e);
+    char *path = document_relative(&l->doc, plugin);
+    if (!path)
+        return error_memory(e, "a path", strlen(plugin));
+    int status = loader_load(&l->registry, path, e);
+    free(path);
+    return status;
+}
+
 /* The scene, and all plugins that it and the command line name. */
 static int load(struct loaded *l, const struct scene_options *o, struct error *e)
 {
@@ -62,7 +81,7 @@ static int load(struct loaded *l, const struct scene_options *o, struct error *e
         if (loader_load(&l->registry, o->load[i], e))
             return -1;
     for (size_t i = 0; i < l->scene.n_plugin; i++)
-        if (loader_load(&l->registry, l->scene.plugin[i], e))
+        if (load_named(l, l->scene.plugin[i], e))
             return -1;
     return 0;
 }

@@ -134,6 +134,31 @@ static int add_rate(struct plan *plan, struct plan_array *a, const sph_rate *dec
     return 0;
 }
 
+/* A rate that no array has would be forgotten in silence: all would stand still. `of` declares it. */
+static int check_rates(const struct plan *plan, const char *of, const sph_list *rates,
+                       struct error *e)
+{
+    for (uint32_t i = 0; i < rates->count; i++) {
+        const sph_rate *declared = list_at(rates, i);
+        const char *missing = declared->property;
+        bool found = false;
+        for (size_t a = 0; a < plan->n_array && !found; a++) {
+            const struct particles *p = &plan->array[a].p;
+            found = particles_find(p, declared->property) >= 0;
+            if (found && particles_find(p, declared->rate) < 0) {
+                missing = declared->rate;
+                found = false;
+            }
+        }
+        if (!found)
+            return document_fail(plan->scene->doc, plan->scene->scheme.node, e,
+                                 "%s advances \"%s\" with \"%s\", but no function of the recipe "
+                                 "declares the property \"%s\"",
+                                 of, declared->property, declared->rate, missing);
+    }
+    return 0;
+}
+
 static int add_rates(struct plan *plan, const sph_list *rates, size_t array, struct error *e)
 {
     for (uint32_t i = 0; i < rates->count; i++)
@@ -191,9 +216,14 @@ int columns_finish(struct plan *plan, struct error *e)
         for (uint32_t k = 0; p->moment != MOMENT_EVALUATE && k < p->use.item->props.count; k++)
             if (pass_writes(p, p->dst.array, p->dst.column[k]))
                 plan->array[p->dst.array].p.column[p->dst.column[k]].state = true;
-        if (p->function && add_rates(plan, &p->function->rates, p->dst.array, e))
+        if (p->function && (check_rates(plan, p->name, &p->function->rates, e) ||
+                            add_rates(plan, &p->function->rates, p->dst.array, e)))
             return -1;
     }
+    /* An edit may take out on purpose what a rate of the scheme is about. */
+    if (plan->scheme && plan->scene->scheme.n_edit == 0 &&
+        check_rates(plan, plan->scheme_name, &plan->scheme->rates, e))
+        return -1;
     for (size_t a = 0; plan->scheme && a < plan->n_array; a++)
         if (add_rates(plan, &plan->scheme->rates, a, e))
             return -1;

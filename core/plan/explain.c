@@ -58,6 +58,21 @@ static void item(struct line *l, const char *word)
     l->any = true;
 }
 
+/* Words from column DOC_COLUMN on, in as many lines as they take. */
+#define DOC_COLUMN 49
+static void print_doc(const char *text, FILE *out)
+{
+    int column = DOC_COLUMN;
+    while (*text) {
+        int n = (int)strcspn(text, " ");
+        if (column > DOC_COLUMN && column + 1 + n > 79)
+            column = fprintf(out, "\n%*s", DOC_COLUMN, "") - 1;
+        column += fprintf(out, "%s%.*s", column > DOC_COLUMN ? " " : "", n, text);
+        text += n + (text[n] == ' ');
+    }
+    fprintf(out, "\n");
+}
+
 static void print_access(const struct plan *plan, const struct pass *p, const char *title,
                          uint32_t access, bool source, FILE *out)
 {
@@ -103,13 +118,62 @@ static void print_array(const struct plan *plan, size_t index, FILE *out)
             plan->has_kernel ? 4.0 * (neighbours(plan, a) * 2.0) / SPH_LANES * 2.0 : 0.0);
     for (size_t c = 0; c < a->p.n_column; c++) {
         const struct column *column = &a->p.column[c];
-        fprintf(out, "    %-8s %-16s %-5s %-12s %.31s\n", column->name, type_name(column->type),
-                column->state ? "state" : "", column->unit ? column->unit : "",
-                column->doc ? column->doc : "");
+        fprintf(out, "    %-8s %-16s %-5s %-12s ", column->name, type_name(column->type),
+                column->state ? "state" : "", column->unit ? column->unit : "");
+        print_doc(column->doc ? column->doc : "", out);
     }
     for (size_t k = 0; k < a->n_rate; k++)
         fprintf(out, "    %s advances with %s (%s)\n", a->p.column[a->rate[k].property].name,
                 a->p.column[a->rate[k].rate].name, a->rate[k].kind == SPH_DRIFT ? "drift" : "kick");
+}
+
+/* The last pass before `index` in an evaluation that has set a column whose value nobody has read; NULL: none. */
+static const struct pass *set_in_vain(const struct plan *plan, size_t index, size_t array,
+                                      int column)
+{
+    for (size_t i = index; i-- > 0;) {
+        const struct pass *p = &plan->pass[i];
+        if (p->moment != MOMENT_EVALUATE)
+            continue;
+        if (pass_reads_source(p, array, column))
+            return NULL;
+        for (uint32_t k = 0; p->dst.array == array && k < p->use.item->props.count; k++)
+            if (p->dst.column[k] == column)
+                return pass_writes(p, array, column) ? p : NULL;
+    }
+    return NULL;
+}
+
+/* Rates that one function sets and a later one begins anew, where it should have added: a slip that
+ * takes, say, all pressure out of a flow. */
+static void print_lost(const struct plan *plan, FILE *out)
+{
+    for (size_t i = 0; i < plan->n_pass; i++) {
+        const struct pass *p = &plan->pass[i];
+        const struct plan_array *a = &plan->array[p->dst.array];
+        for (uint32_t k = 0; p->moment == MOMENT_EVALUATE && k < p->use.item->props.count; k++) {
+            const sph_prop *prop = list_at(&p->use.item->props, k);
+            bool rate = false;
+            for (size_t r = 0; r < a->n_rate; r++)
+                rate = rate || a->rate[r].rate == p->dst.column[k];
+            if (!rate || (prop->access & SPH_DST_READ) ||
+                !pass_writes(p, p->dst.array, p->dst.column[k]))
+                continue;
+            const struct pass *before = set_in_vain(plan, i, p->dst.array, p->dst.column[k]);
+            if (before)
+                fprintf(out,
+                        "note: %s begins \"%s\" anew;\n      what %s has put into it is lost\n",
+                        p->name, prop->name, before->name);
+        }
+    }
+}
+
+static bool told_before(const struct plan *plan, size_t reduction)
+{
+    for (size_t i = 0; i < reduction; i++)
+        if (plan->reduction[i].declared == plan->reduction[reduction].declared)
+            return true;
+    return false;
 }
 
 /* Which columns the ghosts need anew, and after which pass. */
@@ -154,7 +218,8 @@ static double expected_pairs(const struct plan *plan)
 
 void plan_print(const struct plan *plan, FILE *out)
 {
-    fprintf(out, "%s\n", plan->scene->title ? plan->scene->title : "untitled");
+    const char *title = plan->scene->title;
+    fprintf(out, "%s\n", title && title[0] ? title : plan->scene->doc->path);
     fprintf(out, "  scheme %s, kernel %s, integrator %s, %d dimension%s, cfl %g\n",
             plan->scheme_name ? plan->scheme_name : "none",
             plan->kernel_name ? plan->kernel_name : "none", plan->integrator->name, plan->dim,
@@ -165,10 +230,13 @@ void plan_print(const struct plan *plan, FILE *out)
     fprintf(out, "passes\n");
     for (size_t i = 0; i < plan->n_pass; i++)
         print_pass(plan, &plan->pass[i], i + 1, out);
+    print_lost(plan, out);
     print_exchanges(plan, out);
     fprintf(out, "reductions\n");
     for (size_t i = 0; i < plan->n_reduction; i++) {
         const sph_reduction *d = plan->reduction[i].declared;
+        if (told_before(plan, i))
+            continue;
         static const char *const op[] = {"", "minimum", "maximum", "sum"};
         static const char *const use[] = {"shown in the log", "bounds the time step",
                                           "internal energy", "potential energy"};

@@ -5,6 +5,7 @@
 #include "registry/loader.h"
 
 #include "base/text.h"
+#include "registry/crash.h"
 #include "registry/module.h"
 #include "registry/trust.h"
 
@@ -41,15 +42,18 @@ static int load_file(struct registry *r, const char *file, struct error *e)
 
     if (!path)
         return error_prefix(e, "plugin %s", file);
-    if (is_loaded(r, path))
-        status = 0;
-    else
-        module = module_open(path, e);
+    if (is_loaded(r, path)) {
+        free(path);
+        return 0;
+    }
+    crash_watch(path, "being loaded");
+    module = module_open(path, e);
     if (module) {
         status = registry_add(r, path, module_entry(module), module, module_close, e);
         if (status)
             module_close(module);
     }
+    crash_forget();
     free(path);
     return status;
 }

@@ -7,6 +7,7 @@
 #include "base/text.h"
 #include "registry/check.h"
 #include "registry/copy.h"
+#include "registry/crash.h"
 #include "registry/extension.h"
 #include "registry/fpmode.h"
 #include "registry/reach.h"
@@ -264,9 +265,11 @@ void registry_fini(struct registry *r)
     drop_entries(r, 0);
     while (r->n_plugin > 0) {
         struct plugin *p = &r->plugin[--r->n_plugin];
+        crash_watch(p->path, "being closed");
         run_fini(r, p);
         if (p->handle && p->close)
             p->close(p->handle);
+        crash_forget();
         plugin_free(p);
     }
     free(r->entry);

@@ -103,6 +103,14 @@ for name, ways in WAYS.items():
     run("sph-plugin-check", os.path.join(plugins, f"{name}.so"), cwd=folder)
     print(f"ok   {name}: sph-plugin-check has nothing against it")
 
+# A table for a parameter of what is checked, and one that cannot be had.
+table = ["sph-plugin-check", os.path.join(plugins, "piston.so"), "--set"]
+run(*table, 'piston-place.path={"t": [0, 1], "v": [0, 1]}', cwd=folder)
+missing = subprocess.run([*table, "piston-place.path=no.csv"], cwd=folder, capture_output=True, text=True)
+if missing.returncode != 2 or "/piston-place/path: no.csv: cannot be read" not in missing.stderr:
+    sys.exit(f"MISS a table that is not there: {missing.returncode}, {missing.stderr}")
+print("ok   piston: sph-plugin-check takes a table")
+
 physics = Physics(os.path.join(source, "tests", "sdk"), folder, plugins)
 physics.tube({way: os.path.dirname(built["stiffened-gas", way]) for way in WAYS["stiffened-gas"]})
 physics.solver()

@@ -433,6 +433,8 @@ static void users_folder(void **state)
 
 static void count(const char *sentence, void *context)
 {
+    if (!strstr(sentence, folder)) /* what is installed already is not this test's */
+        return;
     assert_non_null(strstr(sentence, "text.so"));
     ++*(int *)context;
 }
@@ -441,6 +443,7 @@ static void all_of_them(void **state)
 {
     char both[600];
     int refusals = 0;
+    size_t ours = 0;
 
     (void)state;
     assert_int_equal(mkdir(path("later"), 0755), 0);
@@ -452,7 +455,9 @@ static void all_of_them(void **state)
     setenv("SPH_PLUGIN_PATH", both, 1);
     assert_int_equal(loader_load_all(&registry, count, &refusals, &e), 0);
     assert_int_equal(refusals, 1);
-    assert_int_equal(registry.n_plugin, 1);
+    for (size_t i = 0; i < registry.n_plugin; i++)
+        ours += strncmp(registry.plugin[i].path, folder, strlen(folder)) == 0;
+    assert_int_equal(ours, 1);
     assert_string_equal(registry.plugin[0].path, path("good.so"));
 }
 

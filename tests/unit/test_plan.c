@@ -69,7 +69,8 @@ static const sph_function push = {.size = SIZE(sph_function),
                                   .rates = SPH_LIST(push_rates),
                                   .reductions = SPH_LIST(push_reductions)};
 
-static const sph_prop other_props[] = {{"b", "m/s^2", "", SPH_VECTOR, SPH_DST_WRITE, 0}};
+static const sph_prop other_props[] = {{"b", "m/s^2", "", SPH_VECTOR, SPH_DST_WRITE, 0},
+                                       {"v", "m/s", "velocity", SPH_VECTOR, SPH_DST_READ, 0}};
 static const sph_rate other_rates[] = {{"v", "b", SPH_KICK, 0}};
 ITEM(other, "other-rate", SPH_NO_LIST);
 static const sph_function other = {.size = SIZE(sph_function),
@@ -78,6 +79,15 @@ static const sph_function other = {.size = SIZE(sph_function),
                                    .run = nothing,
                                    .reach_scale = 1,
                                    .rates = SPH_LIST(other_rates)};
+
+static const sph_prop lost_props[] = {{"b", "m/s^2", "", SPH_VECTOR, SPH_DST_WRITE, 0}};
+ITEM(lost, "lost-rate", SPH_NO_LIST);
+static const sph_function lost = {.size = SIZE(sph_function),
+                                  .shape = SPH_POINT,
+                                  .item = &lost_item,
+                                  .run = nothing,
+                                  .reach_scale = 1,
+                                  .rates = SPH_LIST(other_rates)};
 
 static const sph_prop mark_props[] = {{"once", "", "", SPH_SCALAR, SPH_DST_WRITE, 0}};
 ITEM(mark, "mark", SPH_NO_LIST);
@@ -165,7 +175,7 @@ static const sph_item shore_item = {SIZE(sph_item), SPH_ALL_DIMS, "shore", "a mo
                                     SPH_NO_LIST,    SPH_NO_LIST};
 static const sph_boundary shore = {SIZE(sph_boundary), 0, &shore_item, SPH_LIST(shore_steps)};
 
-static const struct rig_items items = {{&sum, &push, &other, &mark, &clip, &flat, NULL},
+static const struct rig_items items = {{&sum, &push, &other, &lost, &mark, &clip, &flat, NULL},
                                        {&gas, NULL},
                                        {&flow, &flat_flow, NULL},
                                        {&shore, NULL},
@@ -301,6 +311,11 @@ static void test_rates(void **state)
     assert_int_equal(r.plan.array[1].n_rate, 1); /* x by v: push reads the wall's v */
     assert_true(column(&r, 1, "a") < 0 && column(&r, 1, "near") < 0);
     rig_close(&r);
+    rig_refused(
+        &items,
+        "lost-rate(fluid) advances \"v\" with \"b\", but no function of the recipe declares "
+        "the property \"v\"",
+        ONE(EDIT("{'replace':'push','with':'lost-rate'}")));
     rig_refused(&items, "v has two rates", ONE(EDIT("{'insert':'other-rate','after':'push'}")));
 }
 

@@ -76,7 +76,7 @@ static void test_csv_wrong(void **state)
         {"1,2\n3,4\n", "file:1:1: 1 is a number; a line of column names"},
         {"x,,y\n", "file:1:3: a column without a name"},
         {"x,y,x\n", "file:1:5: the column \"x\" stands there twice"},
-        {"x,y\n1,2\n1\n", "file:3: 1 cells for 2 columns"},
+        {"x,y\n1,2\n1\n", "file:3: 1 cell for 2 columns"},
         {"x,y\n1,2,3\n", "file:2:5: more cells than the 2 columns"},
         {"x,y\n1,abc\n", "file:2:3: \"abc\" in column \"y\" is not a number"},
         {"x,y\n1,\n", "file:2:3: \"\" in column \"y\" is not a number"},

@@ -134,7 +134,7 @@ expect("no integration", result.code == 2 and "declares no rate of" in result.st
 # A function that sets a rate anew which another has just set: the plan warns.
 for scene, notes in ((with_edit(sod, {"insert": "gsph-rates", "after": "gsph-rates"}), 1), (sod, 0)):
     told = scenes.command("plan", scenes.write(scene)).stdout
-    expect("rates set twice", told.count('note: gsph-rates(fluid) begins "du" anew;') == notes, told)
+    expect("rates set twice", told.count('note: gsph-rates(fluid) sets "du" anew;') == notes, told)
     expect("lines of 80 columns", max(map(len, told.splitlines())) <= 80, told)
 
 # The path of a plugin is relative to the scene, not to where sph is started.

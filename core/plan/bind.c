@@ -321,6 +321,7 @@ void bind_free(struct plan *plan)
         assignment_free(p->assignment);
         free(p->name);
         free(p->dst.column);
+        free(p->continues);
         free(p->space);
         for (size_t k = 0; k < p->n_src; k++)
             free(p->src[k].column);

@@ -199,6 +199,28 @@ static int add_integrator_columns(struct plan *plan, struct error *e)
     return 0;
 }
 
+/* Rates add up over an evaluation: only the first pass that sums one starts it, unless an earlier one
+ * has set it. An iterating pass starts anew, or its sweeps would add up too. */
+static int find_continued(struct plan *plan, size_t pass, struct error *e)
+{
+    struct pass *p = &plan->pass[pass];
+    const struct plan_array *a = &plan->array[p->dst.array];
+    p->continues = calloc(p->use.item->props.count + 1, sizeof *p->continues);
+    if (!p->continues)
+        return error_memory(e, "the plan", p->use.item->props.count);
+    for (uint32_t k = 0; !p->max_sweeps && k < p->use.item->props.count; k++) {
+        const sph_prop *prop = list_at(&p->use.item->props, k);
+        bool rate = false;
+        for (size_t r = 0; r < a->n_rate; r++)
+            rate = rate || a->rate[r].rate == p->dst.column[k];
+        for (size_t i = 0; rate && (prop->access & SPH_DST_SUM) && i < pass; i++)
+            if (plan->pass[i].moment == p->moment && plan->pass[i].dst.array == p->dst.array &&
+                pass_writes(&plan->pass[i], p->dst.array, p->dst.column[k]))
+                p->continues[k] = true;
+    }
+    return 0;
+}
+
 static void hide_work(struct plan *plan, const struct pass *p)
 {
     for (uint32_t k = 0; k < p->use.item->props.count; k++) {
@@ -240,7 +262,10 @@ int columns_finish(struct plan *plan, struct error *e)
             pa->p.column[c].output = !strchr(pa->p.column[c].name, '.');
         }
     }
-    for (size_t i = 0; i < plan->n_pass; i++)
+    for (size_t i = 0; i < plan->n_pass; i++) {
         hide_work(plan, &plan->pass[i]);
+        if (find_continued(plan, i, e))
+            return -1;
+    }
     return 0;
 }

@@ -144,7 +144,7 @@ static const struct pass *set_in_vain(const struct plan *plan, size_t index, siz
     return NULL;
 }
 
-/* Rates that one function sets and a later one begins anew, where it should have added: a slip that
+/* Rates that one function sets and a later one sets anew, where it should have added: a slip that
  * takes, say, all pressure out of a flow. */
 static void print_lost(const struct plan *plan, FILE *out)
 {
@@ -156,13 +156,12 @@ static void print_lost(const struct plan *plan, FILE *out)
             bool rate = false;
             for (size_t r = 0; r < a->n_rate; r++)
                 rate = rate || a->rate[r].rate == p->dst.column[k];
-            if (!rate || (prop->access & SPH_DST_READ) ||
+            if (!rate || (prop->access & SPH_DST_READ) || p->continues[k] ||
                 !pass_writes(p, p->dst.array, p->dst.column[k]))
                 continue;
             const struct pass *before = set_in_vain(plan, i, p->dst.array, p->dst.column[k]);
             if (before)
-                fprintf(out,
-                        "note: %s begins \"%s\" anew;\n      what %s has put into it is lost\n",
+                fprintf(out, "note: %s sets \"%s\" anew;\n      what %s has put into it is lost\n",
                         p->name, prop->name, before->name);
         }
     }

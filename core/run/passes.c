@@ -104,7 +104,7 @@ static void reset_accumulators(const struct run *r, const struct pass *p,
     const struct particles *particles = &r->plan->array[p->dst.array].p;
     for (uint32_t k = 0; k < p->use.item->props.count; k++) {
         const sph_prop *prop = list_at(&p->use.item->props, k);
-        if (!(prop->access & (SPH_DST_SUM | SPH_DST_MAX | SPH_DST_MIN)))
+        if (!(prop->access & (SPH_DST_SUM | SPH_DST_MAX | SPH_DST_MIN)) || p->continues[k])
             continue;
         const struct column *column = &particles->column[p->dst.column[k]];
         for (uint32_t c = 0; c < column->ncomp; c++)

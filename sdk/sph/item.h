@@ -21,8 +21,9 @@ SPH_BEGIN_DECLS
 #define SPH_DST_READ 0x01u  /* reads the destination's value */
 #define SPH_SRC_READ 0x02u  /* reads the sources' values: the host refreshes their ghosts first */
 #define SPH_DST_WRITE 0x04u /* sets the destination's value, every destination, each time */
-/* Adds to it: each pass begins anew, the host sets it to `start` before the first source. To add to
- * what an earlier function has summed: SPH_DST_UPDATE. */
+/* Adds to it: the host sets it to `start` before the first source, for each pass anew. But what is
+ * the rate of something in this run (sph_rate) adds up over an evaluation: it starts only where no
+ * earlier function has set it or added to it, so that a force works alone and beside others. */
 #define SPH_DST_SUM 0x08u
 #define SPH_DST_MAX 0x10u /* takes the maximum; starts as above */
 #define SPH_DST_MIN 0x20u /* takes the minimum; starts as above */

@@ -42,6 +42,25 @@ FUNCTION(spring, "spring", SPH_LIST(spring_params)) = {.size = SIZE(sph_function
                                                        .reach_scale = 1,
                                                        .rates = SPH_LIST(spring_rates)};
 
+static sph_status pull_run(const sph_batch *b)
+{
+    for (uint64_t i = b->first; i < b->first + b->count; i++)
+        at(&b->dst[0], 0)[i] += 1, at(&b->dst[1], 0)[i] += 1;
+    return SPH_OK;
+}
+
+static const sph_prop pull_props[] = {
+    {"a", "", "", SPH_VECTOR, SPH_DST_SUM, 0.25},
+    {"pulled", "", "", SPH_SCALAR, SPH_DST_SUM, 0},
+    {"v", "", "", SPH_VECTOR, SPH_DST_READ, 0},
+};
+FUNCTION(pull, "pull", SPH_NO_LIST) = {.size = SIZE(sph_function),
+                                       .shape = SPH_POINT,
+                                       .item = &pull_item,
+                                       .run = pull_run,
+                                       .reach_scale = 1,
+                                       .rates = SPH_LIST(spring_rates)};
+
 static sph_status bound_run(const sph_batch *b)
 {
     for (uint64_t i = b->first; i < b->first + b->count; i++)
@@ -263,7 +282,7 @@ static const sph_scheme coast = {
     SIZE(sph_scheme), 0, &coast_item, "thing", "kdk", 0.25, SPH_LIST(coast_steps), SPH_LIST(rates)};
 
 const struct rig_items motion_items = {
-    {&spring, &bound, &measure, &count_up, &breathe, &shade, &gather, &wide, &widen, NULL},
+    {&spring, &pull, &bound, &measure, &count_up, &breathe, &shade, &gather, &wide, &widen, NULL},
     {NULL},
     {&swing, &coast, NULL},
     {NULL},

@@ -8,6 +8,7 @@
 
 /* Schemes: "swing" (spring), "coast" (nothing but x by v). Functions:
  *   spring       a = -x - damping v
+ *   pull         adds 1 to a_x, which begins at 0.25, and to "pulled", which is no rate
  *   bound        dt = early, from t = 0.5 on late; bounds the time step
  *   measure      "value" as it stands: minimum, maximum, sum and a bound of the time step
  *   count-up     done += 1 a sweep until it is "need", at most six sweeps

@@ -462,22 +462,50 @@ static void test_threads(void **state)
     end(&one);
 }
 
+/* -- Rates add up -------------------------------------------------------------------------------- */
+
+static void pulled(const char *edits, double times_x, double constant)
+{
+    struct motion m;
+
+    rig_open(
+        &m.rig, &motion_items,
+        "{'dimensions':2,'domain':{'min':[0,0],'max':[1,1]},'particles':{'mass':{'fill':"
+        "{'lattice':'square','count':4},'fields':{'rho':1,'v':[0,0]}}},'scheme':{'name':'swing',"
+        "'edit':[%s]},'time':{'end':1}}",
+        edits);
+    begin(&m, 2);
+    for (int k = 0; k < 3; k++) /* whatever the last evaluation has left */
+        passes(&m, MOMENT_EVALUATE);
+    for (size_t i = 0; i < 4; i++) {
+        const double x = rig_real(&m.rig, 0, "x", 0)[i];
+        assert_true(rig_real(&m.rig, 0, "a", 0)[i] == times_x * x + constant);
+        assert_true(rig_real(&m.rig, 0, "pulled", 0)[i] == 1);
+    }
+    end(&m);
+}
+
+/* Alone, beside a function that sets the rate, beside its like; what is no rate begins anew. */
+static void rates_add_up(void **state)
+{
+    (void)state;
+    pulled("{'insert':'pull','after':'spring'}", -1, 1);
+    pulled("{'insert':'pull','after':'spring'},{'insert':'pull','after':'spring'}", -1, 2);
+    pulled("{'insert':'pull','after':'spring'},{'delete':'spring'}", 0, 1.25);
+    pulled("{'replace':'spring','with':'pull'},{'insert':'pull','after':'pull'}", 0, 2.25);
+    pulled("{'insert':'pull','before':'spring'}", -1, 0); /* spring sets it anew */
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_second_order),
-        cmocka_unit_test(test_reversible),
-        cmocka_unit_test(test_drift),
-        cmocka_unit_test(test_all_pairs),
-        cmocka_unit_test(test_ghosts_refreshed),
-        cmocka_unit_test(test_beyond_the_side),
-        cmocka_unit_test(test_pairs_at_start_and_finish),
-        cmocka_unit_test(test_several_sources),
-        cmocka_unit_test(test_lost_particle),
-        cmocka_unit_test(test_unfinished_only),
-        cmocka_unit_test(test_growth),
-        cmocka_unit_test(test_reductions),
-        cmocka_unit_test(test_threads),
+        cmocka_unit_test(rates_add_up),         cmocka_unit_test(test_second_order),
+        cmocka_unit_test(test_reversible),      cmocka_unit_test(test_drift),
+        cmocka_unit_test(test_all_pairs),       cmocka_unit_test(test_ghosts_refreshed),
+        cmocka_unit_test(test_beyond_the_side), cmocka_unit_test(test_pairs_at_start_and_finish),
+        cmocka_unit_test(test_several_sources), cmocka_unit_test(test_lost_particle),
+        cmocka_unit_test(test_unfinished_only), cmocka_unit_test(test_growth),
+        cmocka_unit_test(test_reductions),      cmocka_unit_test(test_threads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

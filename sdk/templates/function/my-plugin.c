@@ -103,8 +103,8 @@ static const sph_function spread_function = {
 enum { DECAY_C, DECAY_DC };
 static const sph_prop decay_props[] = {
     SPH_PROP("c", "kg/kg", "concentration", SPH_SCALAR, SPH_DST_READ, NAN),
-    /* Read and written: it is added to what has been summed so far. */
-    SPH_PROP("dc", "1/s", "rate of the concentration", SPH_SCALAR, SPH_DST_UPDATE, 0),
+    /* Sums that are rates add up over the functions of a recipe: this one works alone as well. */
+    SPH_PROP("dc", "1/s", "rate of the concentration", SPH_SCALAR, SPH_DST_SUM, 0),
 };
 enum { TAU };
 static const sph_param decay_params[] = {
@@ -139,6 +139,7 @@ static const sph_function decay_function = {
     .item = &decay_item,
     .run = decay,
     .reach_scale = 1.0,
+    .rates = SPH_LIST(rates),
 };
 
 /* -- The plugin -------- */

@@ -54,7 +54,7 @@ struct pass {
     sph_range_fn before, run, after;
     uint32_t reach;
     uint32_t max_sweeps;
-    int unfinished;               /* column of the destination, or -1 */
+    int unfinished;  /* column of the destination, or -1 */
     bool *continues; /* [props]: a summed rate that an earlier pass of the moment has begun */
     const sph_function *function; /* NULL for an equation of state */
     struct binding dst;

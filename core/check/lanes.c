@@ -5,51 +5,8 @@
 #include <sph/kernel-value.h>
 #include <stdint.h>
 
-#define SPH_ISA base
-#define SPH_WIDTH 2
-#include "check/lanes_set.h"
-#undef SPH_ISA
-#undef SPH_WIDTH
-
-#if defined(__x86_64__)
-
-#define SPH_ISA avx2
-#define SPH_WIDTH 4
-#if defined(__clang__)
-#pragma clang attribute push(__attribute__((target("avx2,fma,bmi,bmi2"))), apply_to = function)
-#else
-#pragma GCC push_options
-#pragma GCC target("avx2,fma,bmi,bmi2")
-#endif
-#include "check/lanes_set.h"
-#if defined(__clang__)
-#pragma clang attribute pop
-#else
-#pragma GCC pop_options
-#endif
-#undef SPH_ISA
-#undef SPH_WIDTH
-
-#define SPH_ISA avx512
-#define SPH_WIDTH 8
-#if defined(__clang__)
-#pragma clang attribute push(                                                                      \
-    __attribute__((target("avx2,fma,bmi,bmi2,avx512f,avx512vl,avx512dq,avx512bw"))),               \
-    apply_to = function)
-#else
-#pragma GCC push_options
-#pragma GCC target("avx2,fma,bmi,bmi2,avx512f,avx512vl,avx512dq,avx512bw")
-#endif
-#include "check/lanes_set.h"
-#if defined(__clang__)
-#pragma clang attribute pop
-#else
-#pragma GCC pop_options
-#endif
-#undef SPH_ISA
-#undef SPH_WIDTH
-
-#endif
+#define SPH_EACH_ISA "check/lanes_set.h"
+#include <sph/each-isa.h>
 
 typedef void (*evaluate)(const sph_kernel_form *, const double *, double *, double *, size_t);
 
@@ -67,11 +24,7 @@ static const struct {
 size_t lanes_count(void)
 {
 #if defined(__x86_64__)
-    const int wide = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-    const int wider = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-                      __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw");
-
-    return wide && wider ? 3 : wide ? 2 : 1;
+    return SPH_HAS_AVX2 && SPH_HAS_AVX512 ? 3 : SPH_HAS_AVX2 ? 2 : 1;
 #else
     return 1;
 #endif

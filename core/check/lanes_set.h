@@ -1,7 +1,5 @@
-/* check/lanes_set.h -- the words of sph/lanes.h for one instruction set, and a kernel evaluated
- * with them; the inside of lanes.c, included once a set with SPH_ISA and SPH_WIDTH defined. */
-#include <sph/lanes.h>
-
+/* check/lanes_set.h -- a kernel evaluated with the words of sph/lanes.h; the inside of lanes.c,
+ * included by sph/each-isa.h once for each instruction set. */
 static void SPH_OF_ISA(evaluate)(const sph_kernel_form *form, const double *q, double *w,
                                  double *dw, size_t n)
 {

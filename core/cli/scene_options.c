@@ -49,9 +49,8 @@ const struct argp scene_argp = {.options = options, .parser = parse};
  * a name may have come in by --load, from wherever its file stands. */
 static int load_named(struct loaded *l, const char *plugin, struct error *e)
 {
-    for (size_t i = 0; i < l->registry.n_plugin; i++)
-        if (strcmp(l->registry.plugin[i].name, plugin) == 0)
-            return 0;
+    if (registry_plugin(&l->registry, plugin))
+        return 0;
     if (!strchr(plugin, '/'))
         return loader_load(&l->registry, plugin, e);
     char *path = document_relative(&l->doc, plugin);

@@ -53,14 +53,6 @@ static int64_t size_of(int fd)
     return fd >= 0 && fstat(fd, &st) == 0 ? (int64_t)st.st_size : -1;
 }
 
-static const struct plugin *find(const struct registry *r, const char *name)
-{
-    for (size_t i = 0; i < r->n_plugin; i++)
-        if (strcmp(r->plugin[i].name, name) == 0)
-            return &r->plugin[i];
-    return NULL;
-}
-
 /* The first byte that differs in a piece, or n. */
 static size_t first_difference(const char *a, const char *b, size_t n)
 {
@@ -85,7 +77,7 @@ static void share_text(const struct comparison *c, const char *text, char out[PA
  * difference. */
 static int compare(const struct comparison *c, const char *name, const char *path, struct error *e)
 {
-    const struct plugin *p = find(c->registry, name);
+    const struct plugin *p = registry_plugin(c->registry, name);
     const int fd = p ? loader_descriptor(p) : -1;
     int64_t bytes = size_of(fd), theirs = bytes;
     int status = 0;

@@ -51,18 +51,7 @@ static int run_inverse(struct plan *plan, struct plan_array *a, struct error *e)
             a->given[c] = true;
     }
     if (!status) {
-        sph_batch b = {.size = sizeof b,
-                       .dim = (uint32_t)plan->dim,
-                       .real = SPH_F64,
-                       .lanes = SPH_LANES,
-                       .count = a->p.n,
-                       .n_dst = a->p.n,
-                       .dst = column,
-                       .n_columns = n,
-                       .n_params = eos->item->params.count,
-                       .param = a->eos.config.value,
-                       .state = a->eos.state,
-                       .host = &plan->registry->host};
+        sph_batch b = use_batch(plan, &a->eos, column, n, a->p.n);
         sph_status s = eos->inverse(&b);
         char why[512];
         if (s != SPH_OK) {

@@ -155,6 +155,10 @@ struct use_state {
 bool use_has_state(const struct use *u);
 int use_save(const struct use *u, struct registry *r, struct use_state *out, struct error *e);
 int use_restore(struct use *u, struct registry *r, const struct use_state *in, struct error *e);
+/* A batch of all n particles of an array, by the columns that the use declares, with what does not
+ * change in a run: parameters, state, kernel, host. */
+sph_batch use_batch(const struct plan *plan, const struct use *u, const sph_column *dst,
+                    uint32_t n_columns, uint64_t n);
 bool use_declares(const struct use *u, const char *name);
 
 #endif

@@ -88,3 +88,21 @@ void use_fini(struct use *u, struct registry *r)
     use_tables_free(u->tables);
     *u = (struct use){0};
 }
+
+sph_batch use_batch(const struct plan *plan, const struct use *u, const sph_column *dst,
+                    uint32_t n_columns, uint64_t n)
+{
+    return (sph_batch){.size = sizeof(sph_batch),
+                       .dim = (uint32_t)plan->dim,
+                       .real = SPH_F64,
+                       .lanes = SPH_LANES,
+                       .count = n,
+                       .n_dst = n,
+                       .dst = dst,
+                       .n_columns = n_columns,
+                       .n_params = u->item->params.count,
+                       .param = u->config.value,
+                       .state = u->state,
+                       .kernel = plan->has_kernel ? &plan->kernel : NULL,
+                       .host = &plan->registry->host};
+}

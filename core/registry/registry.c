@@ -394,14 +394,6 @@ static int run_init(struct registry *r, const struct plugin *p, struct error *e)
     return changed;
 }
 
-static const struct plugin *find_plugin(const struct registry *r, const char *name)
-{
-    for (size_t i = 0; i < r->n_plugin; i++)
-        if (strcmp(r->plugin[i].name, name) == 0)
-            return &r->plugin[i];
-    return NULL;
-}
-
 int registry_add(struct registry *r, const char *path, sph_plugin_entry_fn entry, void *handle,
                  void (*close)(void *handle), struct error *e)
 {
@@ -418,7 +410,7 @@ int registry_add(struct registry *r, const char *path, sph_plugin_entry_fn entry
     in = entry();
     if (restore_mode(mode, "its sph_plugin_entry", e) || fill_plugin(&p, path, in, e))
         goto fail;
-    other = find_plugin(r, p.name);
+    other = registry_plugin(r, p.name);
     if (other) {
         error_set(e, EXIT_REFUSED, "its name, \"%s\", is that of a plugin loaded already, %s",
                   p.name, other->path);
@@ -436,6 +428,14 @@ fail:
 }
 
 /* -- Asking -------- */
+
+const struct plugin *registry_plugin(const struct registry *r, const char *name)
+{
+    for (size_t i = 0; i < r->n_plugin; i++)
+        if (strcmp(r->plugin[i].name, name) == 0)
+            return &r->plugin[i];
+    return NULL;
+}
 
 const struct entry *registry_find(const struct registry *r, enum kind kind, const char *name)
 {

@@ -72,6 +72,8 @@ int registry_add(struct registry *r, const char *path, sph_plugin_entry_fn entry
 bool registry_is_loading(const struct registry *r);
 sph_status registry_refuse(struct registry *r, const struct error *e);
 
+/* A loaded plugin by its name; NULL if there is none. */
+const struct plugin *registry_plugin(const struct registry *r, const char *name);
 /* By kind and name; NULL if there is none. */
 const struct entry *registry_find(const struct registry *r, enum kind kind, const char *name);
 /* Names of all entries of a kind; the caller frees the array (not the strings). */

@@ -105,20 +105,9 @@ static int compare(const struct run *r, size_t index, struct summary_error **out
                      ? -1
                      : 0;
     if (!status) {
-        sph_batch b = {.size = sizeof b,
-                       .dim = (uint32_t)plan->dim,
-                       .real = SPH_F64,
-                       .lanes = SPH_LANES,
-                       .count = a->p.n,
-                       .n_dst = a->p.n,
-                       .dst = column,
-                       .n_columns = count,
-                       .n_params = use->item->params.count,
-                       .param = use->config.value,
-                       .state = use->state,
-                       .time = r->time,
-                       .step = r->step,
-                       .host = &plan->registry->host};
+        sph_batch b = use_batch(plan, use, column, count, a->p.n);
+        b.time = r->time;
+        b.step = r->step;
         sph_status s = entry_exact(use->entry)->run(&b);
         char why[512];
         if (s != SPH_OK) {

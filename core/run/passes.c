@@ -122,26 +122,22 @@ static void columns_of(const struct run *r, const struct pass *p, const struct b
                                   : particles_column(&r->plan->array[b->array].p, b->column[k]);
 }
 
+sph_batch run_batch(const struct run *r, const struct use *u, const sph_column *dst,
+                    uint32_t n_columns, uint64_t n)
+{
+    sph_batch b = use_batch(r->plan, u, dst, n_columns, n);
+    b.time = r->time;
+    b.dt = r->dt;
+    b.step = r->step;
+    b.run = &r->hooks;
+    return b;
+}
+
 static void batch_begin(const struct run *r, const struct pass *p, sph_batch *b, sph_column *dst)
 {
     const struct plan_array *a = &r->plan->array[p->dst.array];
     columns_of(r, p, &p->dst, dst);
-    *b = (sph_batch){.size = sizeof *b,
-                     .dim = (uint32_t)r->plan->dim,
-                     .real = SPH_F64,
-                     .lanes = SPH_LANES,
-                     .n_dst = a->p.n,
-                     .dst = dst,
-                     .n_columns = p->use.item->props.count,
-                     .n_params = p->use.item->params.count,
-                     .param = p->use.config.value,
-                     .state = p->use.state,
-                     .kernel = r->plan->has_kernel ? &r->plan->kernel : NULL,
-                     .time = r->time,
-                     .dt = r->dt,
-                     .step = r->step,
-                     .host = &r->plan->registry->host,
-                     .run = &r->hooks};
+    *b = run_batch(r, &p->use, dst, p->use.item->props.count, a->p.n);
     if (p->shape == SPH_PAIR) {
         b->x_dst = particles_column(&a->p, a->position);
         b->h_dst = particles_column(&a->p, a->smoothing);

@@ -67,23 +67,9 @@ static int call_born(struct run *r, const struct pass *p, const struct change *c
         const sph_prop *prop = list_at(&d->born_props, k);
         column[k] = particles_column(particles, particles_find(particles, prop->name));
     }
-    sph_batch b = {.size = sizeof b,
-                   .dim = (uint32_t)r->plan->dim,
-                   .real = SPH_F64,
-                   .lanes = SPH_LANES,
-                   .first = c->n_kept,
-                   .count = c->n - c->n_kept,
-                   .n_dst = particles->n,
-                   .dst = column,
-                   .n_columns = n,
-                   .n_params = p->use.item->params.count,
-                   .param = p->use.config.value,
-                   .state = p->use.state,
-                   .time = r->time,
-                   .dt = r->dt,
-                   .step = r->step,
-                   .host = &r->plan->registry->host,
-                   .run = &r->hooks};
+    sph_batch b = run_batch(r, &p->use, column, n, particles->n);
+    b.first = c->n_kept;
+    b.count = c->n - c->n_kept;
     const sph_status status = d->born(&b);
     free(column);
     if (status == SPH_OK)

@@ -70,6 +70,10 @@ static inline double reduction_merge(uint32_t op, double a, double b)
 /* passes.c. All passes of a moment, in order. */
 int run_passes(struct run *r, enum moment moment, struct error *e);
 
+/* passes.c. A batch of all particles of an array (use_batch) in this moment of the run. */
+sph_batch run_batch(const struct run *r, const struct use *u, const sph_column *dst,
+                    uint32_t n_columns, uint64_t n);
+
 /* population.c. Removes and creates what functions have asked for at the end of a step. */
 int run_population(struct run *r, struct error *e);
 

@@ -66,64 +66,9 @@
 #define SPH_LOOP_SELF 0
 #endif
 
-/* The plain set: what every processor of the architecture has (on x86-64: SSE2, two lanes). */
-#define SPH_ISA base
-#define SPH_WIDTH 2
-#ifndef SPH_LANES_base
-#define SPH_LANES_base
-#include <sph/lanes.h>
-#endif
-#include <sph/pair-dims.h>
-#undef SPH_ISA
-#undef SPH_WIDTH
-
-#if defined(__x86_64__) && !defined(SPH_NO_MULTIVERSION)
-
-#define SPH_ISA avx2
-#define SPH_WIDTH 4
-#if defined(__clang__)
-#pragma clang attribute push(__attribute__((target("avx2,fma,bmi,bmi2"))), apply_to = function)
-#else
-#pragma GCC push_options
-#pragma GCC target("avx2,fma,bmi,bmi2")
-#endif
-#ifndef SPH_LANES_avx2
-#define SPH_LANES_avx2
-#include <sph/lanes.h>
-#endif
-#include <sph/pair-dims.h>
-#if defined(__clang__)
-#pragma clang attribute pop
-#else
-#pragma GCC pop_options
-#endif
-#undef SPH_ISA
-#undef SPH_WIDTH
-
-#define SPH_ISA avx512
-#define SPH_WIDTH 8
-#if defined(__clang__)
-#pragma clang attribute push(                                                                      \
-    __attribute__((target("avx2,fma,bmi,bmi2,avx512f,avx512vl,avx512dq,avx512bw"))),               \
-    apply_to = function)
-#else
-#pragma GCC push_options
-#pragma GCC target("avx2,fma,bmi,bmi2,avx512f,avx512vl,avx512dq,avx512bw")
-#endif
-#ifndef SPH_LANES_avx512
-#define SPH_LANES_avx512
-#include <sph/lanes.h>
-#endif
-#include <sph/pair-dims.h>
-#if defined(__clang__)
-#pragma clang attribute pop
-#else
-#pragma GCC pop_options
-#endif
-#undef SPH_ISA
-#undef SPH_WIDTH
-
-#endif
+#define SPH_EACH_ISA <sph/pair-dims.h>
+#include <sph/each-isa.h>
+#undef SPH_EACH_ISA
 
 static sph_status SPH_LOOP(const sph_batch *b)
 {
@@ -135,10 +80,9 @@ static sph_status SPH_LOOP(const sph_batch *b)
                                  SPH_CAT(SPH_LOOP, avx2_3)};
     static const loop avx512[4] = {NULL, SPH_CAT(SPH_LOOP, avx512_1), SPH_CAT(SPH_LOOP, avx512_2),
                                    SPH_CAT(SPH_LOOP, avx512_3)};
-    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
-        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw"))
+    if (SPH_HAS_AVX512)
         return avx512[b->dim](b);
-    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+    if (SPH_HAS_AVX2)
         return avx2[b->dim](b);
 #endif
     return base[b->dim](b);

@@ -50,6 +50,13 @@ typedef struct sph_kernel_form {
     uint32_t n_table, reserved2;
 } sph_kernel_form;
 
+/* Some sources of a group, in ascending order: base + list[first + k], 0 <= k < count. */
+typedef struct sph_span {
+    uint64_t first; /* into the batch's list */
+    uint32_t base;  /* a source's index */
+    uint32_t count; /* at least 1 */
+} sph_span;
+
 typedef struct sph_run sph_run; /* opaque: the run that a batch is part of */
 
 /* All that a call works on. The host's, for the call; what it points to but `state` and the
@@ -61,12 +68,13 @@ typedef struct sph_batch {
     uint32_t lanes;        /* SPH_LANES */
     uint64_t first, count; /* destinations [first, first + count); first is a multiple of lanes */
     uint64_t n_dst, n_src; /* sizes of the two arrays, the source's ghosts included */
-    /* Pair functions: group g = i / lanes has sources list[begin[g]] ... list[begin[g+1] - 1].
-     * The list holds every source within reach of any lane, and some beyond: test r yourself.
-     * The destination itself is in it where the two arrays are one (see `same`). For `run` of a
+    /* Pair functions: group g = i / lanes has the sources of span[begin[g]] ... span[begin[g+1] - 1].
+     * They are every source within reach of any lane, and some beyond: test r yourself. The
+     * destination itself is among them where the two arrays are one (see `same`). For `run` of a
      * pair function alone. */
     const uint64_t *begin;
-    const uint32_t *list;
+    const sph_span *span;
+    const uint16_t *list;
     uint32_t same; /* 1: destination and source are the same array, so i == j is the self pair */
     uint32_t reserved;
     /* Position and smoothing length [the scene's unit of length], over which the list was made: the

@@ -9,8 +9,19 @@
 SPH_BEGIN_DECLS
 
 /* What a real is (sph_batch.real). */
-#define SPH_F64 1u   /* double */
-#define SPH_F32 2u   /* float */
+#define SPH_F64 1u /* double */
+/* float; positions are whole numbers of a quantum (int32_t, see sph_batch.quantum) */
+#define SPH_F32 2u
+/* How a pair function's loop runs (sph_batch.path). The loops of pair-loop.h know them all; any
+ * other `run` takes what it does not know for SPH_PATH_BEST. */
+#define SPH_PATH_BEST 0u      /* as is fastest here */
+#define SPH_PATH_REFERENCE 1u /* the plain loop, a pair at a time, in double */
+#define SPH_PATH_EXTENDED 2u  /* likewise in long double; columns stay doubles */
+#define SPH_PATH_BASE 3u      /* with what every processor of the architecture has */
+#define SPH_PATH_AVX2 4u      /* on x86-64, if the processor has it */
+#define SPH_PATH_AVX512 5u
+/* x = SPH_PATH_ANY_KERNEL + path: and no kernel is compiled in */
+#define SPH_PATH_ANY_KERNEL 16u
 #define SPH_LANES 8u /* destinations in a group */
 
 /* A column of a property, structure of arrays: component c of particle i is element
@@ -64,7 +75,7 @@ typedef struct sph_run sph_run; /* opaque: the run that a batch is part of */
 typedef struct sph_batch {
     uint32_t size;
     uint32_t dim;          /* dimensions of the run: 1, 2 or 3 */
-    uint32_t real;         /* SPH_F64 or SPH_F32 */
+    uint32_t real;         /* of the columns of this call: SPH_F64 or SPH_F32 */
     uint32_t lanes;        /* SPH_LANES */
     uint64_t first, count; /* destinations [first, first + count); first is a multiple of lanes */
     uint64_t n_dst, n_src; /* sizes of the two arrays, the source's ghosts included */
@@ -76,6 +87,11 @@ typedef struct sph_batch {
     const sph_span *span;
     const uint16_t *list;
     uint32_t same; /* 1: destination and source are the same array, so i == j is the self pair */
+    uint32_t path; /* SPH_PATH_... */
+    double
+        quantum; /* with SPH_F32: the unit of positions; x_i - x_j is quantum times the difference
+                     * of two whole numbers, which is exact. 0 otherwise */
+    uint32_t uniform_h; /* pair functions: 1: every h of both arrays is the same number */
     uint32_t reserved;
     /* Position and smoothing length [the scene's unit of length], over which the list was made: the
      * destination's in `before` and `after` too, the sources' in the sweep alone; NULL data for

@@ -1,44 +1,83 @@
 /* sph/each-isa.h -- includes the header SPH_EACH_ISA once for each instruction set that a plugin is
- * compiled for, as the inside of pair-loop.h. There SPH_ISA (a suffix) and SPH_WIDTH (lanes of a
- * vector) are defined, the words of lanes.h are there for that set, and all functions are compiled
- * for it. With SPH_NO_MULTIVERSION defined there is the plain set alone. */
+ * compiled for, and with SPH_EACH_F32 defined twice: for doubles, then for floats. There SPH_ISA (a
+ * suffix), SPH_WIDTH (lanes of a vector) and SPH_F32_WORDS (1: reals are floats) are defined, the
+ * words of lanes.h are there for that set, and all functions are compiled for it. SPH_FORM_LIST is
+ * defined where lists for single destinations are faster than groups (pair-list.h). With
+ * SPH_NO_MULTIVERSION defined there is the plain set alone. */
 
-/* The plain set: what every processor of the architecture has (on x86-64: SSE2, two lanes). */
-#define SPH_ISA base
+/* The plain set: what every processor of the architecture has (on x86-64: SSE2, 16 bytes). */
+#define SPH_FORM_LIST
+#if defined(__x86_64__)
+#include <immintrin.h>
+#define SPH_SSE2_WORDS
+#endif
+#define SPH_ISA base_f64
 #define SPH_WIDTH 2
-#ifndef SPH_LANES_base
-#define SPH_LANES_base
+#define SPH_F32_WORDS 0
+#ifndef SPH_LANES_base_f64
+#define SPH_LANES_base_f64
 #include <sph/lanes.h>
 #endif
 #include SPH_EACH_ISA
 #undef SPH_ISA
 #undef SPH_WIDTH
+#undef SPH_F32_WORDS
+#ifdef SPH_EACH_F32
+#define SPH_ISA base_f32
+#define SPH_WIDTH 4
+#define SPH_F32_WORDS 1
+#ifndef SPH_LANES_base_f32
+#define SPH_LANES_base_f32
+#include <sph/lanes.h>
+#endif
+#include SPH_EACH_ISA
+#undef SPH_ISA
+#undef SPH_WIDTH
+#undef SPH_F32_WORDS
+#endif
+#undef SPH_FORM_LIST
+#undef SPH_SSE2_WORDS
 
 #if defined(__x86_64__) && !defined(SPH_NO_MULTIVERSION)
 
-#define SPH_ISA avx2
-#define SPH_WIDTH 4
 #if defined(__clang__)
 #pragma clang attribute push(__attribute__((target("avx2,fma,bmi,bmi2"))), apply_to = function)
 #else
 #pragma GCC push_options
 #pragma GCC target("avx2,fma,bmi,bmi2")
 #endif
-#ifndef SPH_LANES_avx2
-#define SPH_LANES_avx2
+#define SPH_AVX2_WORDS
+#define SPH_ISA avx2_f64
+#define SPH_WIDTH 4
+#define SPH_F32_WORDS 0
+#ifndef SPH_LANES_avx2_f64
+#define SPH_LANES_avx2_f64
 #include <sph/lanes.h>
 #endif
 #include SPH_EACH_ISA
+#undef SPH_ISA
+#undef SPH_WIDTH
+#undef SPH_F32_WORDS
+#ifdef SPH_EACH_F32
+#define SPH_ISA avx2_f32
+#define SPH_WIDTH 8
+#define SPH_F32_WORDS 1
+#ifndef SPH_LANES_avx2_f32
+#define SPH_LANES_avx2_f32
+#include <sph/lanes.h>
+#endif
+#include SPH_EACH_ISA
+#undef SPH_ISA
+#undef SPH_WIDTH
+#undef SPH_F32_WORDS
+#endif
+#undef SPH_AVX2_WORDS
 #if defined(__clang__)
 #pragma clang attribute pop
 #else
 #pragma GCC pop_options
 #endif
-#undef SPH_ISA
-#undef SPH_WIDTH
 
-#define SPH_ISA avx512
-#define SPH_WIDTH 8
 #if defined(__clang__)
 #pragma clang attribute push(                                                                      \
     __attribute__((target("avx2,fma,bmi,bmi2,avx512f,avx512vl,avx512dq,avx512bw"))),               \
@@ -47,18 +86,37 @@
 #pragma GCC push_options
 #pragma GCC target("avx2,fma,bmi,bmi2,avx512f,avx512vl,avx512dq,avx512bw")
 #endif
-#ifndef SPH_LANES_avx512
-#define SPH_LANES_avx512
+#define SPH_AVX512_WORDS
+#define SPH_ISA avx512_f64
+#define SPH_WIDTH 8
+#define SPH_F32_WORDS 0
+#ifndef SPH_LANES_avx512_f64
+#define SPH_LANES_avx512_f64
 #include <sph/lanes.h>
 #endif
 #include SPH_EACH_ISA
+#undef SPH_ISA
+#undef SPH_WIDTH
+#undef SPH_F32_WORDS
+#ifdef SPH_EACH_F32
+#define SPH_ISA avx512_f32
+#define SPH_WIDTH 8
+#define SPH_F32_WORDS 1
+#ifndef SPH_LANES_avx512_f32
+#define SPH_LANES_avx512_f32
+#include <sph/lanes.h>
+#endif
+#include SPH_EACH_ISA
+#undef SPH_ISA
+#undef SPH_WIDTH
+#undef SPH_F32_WORDS
+#endif
+#undef SPH_AVX512_WORDS
 #if defined(__clang__)
 #pragma clang attribute pop
 #else
 #pragma GCC pop_options
 #endif
-#undef SPH_ISA
-#undef SPH_WIDTH
 
 /* Which of them this processor has. */
 #define SPH_HAS_AVX2 (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))

@@ -79,6 +79,10 @@ typedef struct sph_function {
      * this use. It sees time, dt, step, parameters and reductions but no particles: count is 0, the
      * columns are NULL. Every rank calls it and must come to the same state. Or NULL. [main] */
     sph_range_fn prepare;
+    /* Pair: what reals `run` takes, SPH_F64 | SPH_F32; 0: SPH_F64. `prepare`, `before`, `after` and
+     * point functions get doubles in any case. */
+    uint32_t reals;
+    uint32_t reserved;
 } sph_function;
 
 SPH_END_DECLS

@@ -1,66 +1,273 @@
 /* sph/lanes.h -- the words in which a pair body is written: R (a real in every lane), B (a mask),
- * and functions on them. Included by pair-loop.h once for each instruction set, with SPH_ISA (a
- * suffix) and SPH_WIDTH (lanes of a vector) defined; the same words mean OpenCL vectors on a
- * device.
+ * I (an integer in every lane), and functions on them. Included by each-isa.h once for each
+ * instruction set and precision, with SPH_ISA (a suffix), SPH_WIDTH (lanes of a vector) and
+ * SPH_F32_WORDS (1: reals are floats) defined; the same words mean OpenCL's on a device.
  *
- *   R a = sph_num(0.5);              a constant in every lane (a * 0.5 needs none)
+ *   R a = sph_num(0.1);              a constant in every lane; one that a float holds exactly
+ *                                    needs none: 0.5 * a
  *   a + b, a * b, a / b, -a          as ever;  a < b, a >= b ... give a B;  m & n, m | n, ~m
  *   sph_select(m, a, b)              a where m holds, else b
- *   sph_min, sph_max, sph_abs, sph_sqrt, sph_sign(a) (-1, 0, 1)
- *   sph_pow_where(m, a, b)           a^b where m holds, else 1: each lane that needs it costs
+ *   sph_min, sph_max, sph_abs, sph_sqrt, sph_rsqrt (1 / root; 0 of 0), sph_sign(a) (-1, 0, 1)
+ *   sph_exp(a), sph_log(a), sph_pow(a, b) (a >= 0)
+ *   sph_pow_where(m, a, b)           a^b where m holds, else 1
  *   sph_w(K, q), sph_dw(K, q)        kernel and its derivative in q = r / h, without powers of h
+ *   sph_dw_q(K, q)                   the latter over q, 0 at 0: for gradients along dx, without 1 / r
  *   sph_ipow(a, DIM)                 a small whole power
  * No branches on lanes, no calls to anything else. */
 
+#ifndef SPH_OF_ISA
+#include <math.h>
+#include <sph/kernel-value.h>
 #define SPH_CAT2(a, b) a##_##b
 #define SPH_CAT(a, b) SPH_CAT2(a, b)
 #define SPH_OF_ISA(name) SPH_CAT(name, SPH_ISA)
 #define SPH_INLINE static inline __attribute__((always_inline, unused))
 
+/* W' / q of a kernel of one piece: t^dpower (e[0] + e[1] t + ...) of dn_coef - 1 terms, since q =
+ * knot - t divides the sum if W'(0) = 0. The number of terms; 0: it does not. */
+static inline uint32_t sph_kernel_over_q(const sph_kernel_piece *p, double *e)
+{
+    double rest = 0.0, scale = 0.0;
+    for (uint32_t k = 0; k < p->dn_coef; k++) {
+        scale = fmax(scale, fabs(p->d[k]));
+        rest = k + 1 < p->dn_coef ? (e[k] = (p->d[k] + rest) / p->knot) : p->d[k] + rest;
+    }
+    return p->dn_coef > 1 && fabs(rest) <= 1e-12 * scale ? p->dn_coef - 1 : 0;
+}
+
+/* What a kernel's form has in common with many: a loop that is compiled for it needs no branches on
+ * powers. Wendland's C2 and C4 in two and three dimensions; anything else. */
+#define SPH_SHAPE_ANY 0
+#define SPH_SHAPE_C2 1
+#define SPH_SHAPE_C4 2
+
+static inline int sph_kernel_shape(const sph_kernel_form *k)
+{
+    const sph_kernel_piece *p = &k->piece[0];
+    double e[SPH_KERNEL_COEFS];
+    if (k->n_table || k->n_pieces != 1 || !sph_kernel_over_q(p, e))
+        return SPH_SHAPE_ANY;
+    if (p->power == 4 && p->n_coef == 2 && p->dpower == 3 && p->dn_coef == 2)
+        return SPH_SHAPE_C2;
+    if (p->power == 6 && p->n_coef == 3 && p->dpower == 5 && p->dn_coef == 3)
+        return SPH_SHAPE_C4;
+    return SPH_SHAPE_ANY;
+}
+#endif
+
+#define T SPH_OF_ISA(sph_real)
 #define R SPH_OF_ISA(sph_lanes)
 #define B SPH_OF_ISA(sph_mask)
+#define M SPH_OF_ISA(sph_lanes_in)
+#define FORM SPH_OF_ISA(sph_form)
+#define INT SPH_OF_ISA(sph_int)
 
-typedef double R __attribute__((vector_size(8 * SPH_WIDTH), aligned(8)));
-typedef long long B __attribute__((vector_size(8 * SPH_WIDTH), aligned(8)));
+#if SPH_F32_WORDS
+typedef float T;
+typedef int INT;
+typedef INT B __attribute__((vector_size(4 * SPH_WIDTH), aligned(4)));
+#else
+typedef double T;
+typedef long long INT;
+typedef INT B __attribute__((vector_size(8 * SPH_WIDTH), aligned(8)));
+#endif
+typedef T R __attribute__((vector_size(sizeof(T) * SPH_WIDTH), aligned(sizeof(T))));
 
-SPH_INLINE R SPH_OF_ISA(sph_num_)(double a)
+SPH_INLINE R SPH_OF_ISA(sph_num_)(T a)
 {
     const R zero = {0};
     return zero + a;
 }
 
-SPH_INLINE R SPH_OF_ISA(sph_select_)(B m, R a, R b)
+SPH_INLINE B SPH_OF_ISA(sph_whole_)(INT a)
 {
-    return (R)((m & (B)a) | (~m & (B)b));
+    const B zero = {0};
+    return zero + a;
 }
 
-SPH_INLINE R SPH_OF_ISA(sph_load_)(const double *p)
+SPH_INLINE R SPH_OF_ISA(sph_select_)(B m, R a, R b)
+{
+#if defined(SPH_AVX512_WORDS) && SPH_F32_WORDS
+    return (R)_mm256_mask_blend_ps(_mm256_movepi32_mask((__m256i)m), (__m256)b, (__m256)a);
+#elif defined(SPH_AVX512_WORDS)
+    return (R)_mm512_mask_blend_pd(_mm512_movepi64_mask((__m512i)m), (__m512d)b, (__m512d)a);
+#elif defined(SPH_AVX2_WORDS) && SPH_F32_WORDS
+    return (R)_mm256_blendv_ps((__m256)b, (__m256)a, (__m256)m);
+#elif defined(SPH_AVX2_WORDS)
+    return (R)_mm256_blendv_pd((__m256d)b, (__m256d)a, (__m256d)m);
+#elif defined(SPH_SSE2_WORDS) && SPH_F32_WORDS
+    return (R)_mm_or_ps(_mm_and_ps((__m128)m, (__m128)a), _mm_andnot_ps((__m128)m, (__m128)b));
+#elif defined(SPH_SSE2_WORDS)
+    return (R)_mm_or_pd(_mm_and_pd((__m128d)m, (__m128d)a), _mm_andnot_pd((__m128d)m, (__m128d)b));
+#else
+    return (R)((m & (B)a) | (~m & (B)b));
+#endif
+}
+
+SPH_INLINE R SPH_OF_ISA(sph_load_)(const T *p)
 {
     return *(const R *)(const void *)p;
 }
 
+#ifdef SPH_FORM_LIST
+/* p[k[0]], p[k[1]] ... */
+SPH_INLINE R SPH_OF_ISA(sph_gather_)(const T *p, const uint32_t *k)
+{
+#if SPH_WIDTH == 2
+    return (R){p[k[0]], p[k[1]]};
+#else
+    return (R){p[k[0]], p[k[1]], p[k[2]], p[k[3]]};
+#endif
+}
+
+/* x - p[k[0]], x - p[k[1]] ... of positions. */
+#if SPH_F32_WORDS
+SPH_INLINE R SPH_OF_ISA(sph_step_)(int32_t x, const int32_t *p, const uint32_t *k, T quantum)
+{
+    const B d = {x - p[k[0]], x - p[k[1]], x - p[k[2]], x - p[k[3]]};
+    return __builtin_convertvector(d, R) * quantum;
+}
+#else
+SPH_INLINE R SPH_OF_ISA(sph_step_)(double x, const double *p, const uint32_t *k, T quantum)
+{
+    (void)quantum;
+    return x - SPH_OF_ISA(sph_gather_)(p, k);
+}
+#endif
+#endif
+
+/* -- What x86-64 has an instruction for that no compiler finds by itself ------------------------ */
+
+#if defined(SPH_SSE2_WORDS) || defined(SPH_AVX2_WORDS) || defined(SPH_AVX512_WORDS)
+#if defined(SPH_SSE2_WORDS) && SPH_F32_WORDS
+#define SPH_MM(name) (R) _mm_##name##_ps
+#define SPH_V(a) ((__m128)(a))
+#elif defined(SPH_SSE2_WORDS)
+#define SPH_MM(name) (R) _mm_##name##_pd
+#define SPH_V(a) ((__m128d)(a))
+#elif SPH_F32_WORDS
+#define SPH_MM(name) (R) _mm256_##name##_ps
+#define SPH_V(a) ((__m256)(a))
+#elif SPH_WIDTH == 4
+#define SPH_MM(name) (R) _mm256_##name##_pd
+#define SPH_V(a) ((__m256d)(a))
+#else
+#define SPH_MM(name) (R) _mm512_##name##_pd
+#define SPH_V(a) ((__m512d)(a))
+#endif
+SPH_INLINE R SPH_OF_ISA(sph_max_)(R a, R b)
+{
+    return SPH_MM(max)(SPH_V(a), SPH_V(b));
+}
+SPH_INLINE R SPH_OF_ISA(sph_min_)(R a, R b)
+{
+    return SPH_MM(min)(SPH_V(a), SPH_V(b));
+}
+SPH_INLINE R SPH_OF_ISA(sph_sqrt_)(R a)
+{
+    return SPH_MM(sqrt)(SPH_V(a));
+}
+#else
+SPH_INLINE R SPH_OF_ISA(sph_max_)(R a, R b)
+{
+    return SPH_OF_ISA(sph_select_)((B)(a > b), a, b);
+}
+SPH_INLINE R SPH_OF_ISA(sph_min_)(R a, R b)
+{
+    return SPH_OF_ISA(sph_select_)((B)(a < b), a, b);
+}
 SPH_INLINE R SPH_OF_ISA(sph_sqrt_)(R a)
 {
     R out = a;
     for (int l = 0; l < SPH_WIDTH; l++)
-        out[l] = __builtin_sqrt(a[l]);
+        out[l] = SPH_F32_WORDS ? (T)__builtin_sqrtf((float)a[l]) : (T)__builtin_sqrt((double)a[l]);
     return out;
 }
+#endif
+
+/* Which lanes take part in a pair, in the form that is cheapest to use: M. */
+#ifdef SPH_AVX512_WORDS
+typedef unsigned char M;
+#if SPH_F32_WORDS
+SPH_INLINE M SPH_OF_ISA(sph_within_)(R r2, R reach2, B number, B j)
+{
+    return (M)(_mm256_cmp_ps_mask((__m256)r2, (__m256)reach2, _CMP_LT_OQ) &
+               ~_mm256_cmpeq_epi32_mask((__m256i)number, (__m256i)j));
+}
+SPH_INLINE B SPH_OF_ISA(sph_mask_of_)(M m)
+{
+    return (B)_mm256_movm_epi32(m);
+}
+SPH_INLINE R SPH_OF_ISA(sph_add_where_)(M m, R sum, R a)
+{
+    return (R)_mm256_mask_add_ps((__m256)sum, m, (__m256)sum, (__m256)a);
+}
+SPH_INLINE R SPH_OF_ISA(sph_sub_where_)(M m, R sum, R a)
+{
+    return (R)_mm256_mask_sub_ps((__m256)sum, m, (__m256)sum, (__m256)a);
+}
+#else
+SPH_INLINE M SPH_OF_ISA(sph_within_)(R r2, R reach2, B number, B j)
+{
+    return (M)(_mm512_cmp_pd_mask((__m512d)r2, (__m512d)reach2, _CMP_LT_OQ) &
+               ~_mm512_cmpeq_epi64_mask((__m512i)number, (__m512i)j));
+}
+SPH_INLINE B SPH_OF_ISA(sph_mask_of_)(M m)
+{
+    return (B)_mm512_movm_epi64(m);
+}
+SPH_INLINE R SPH_OF_ISA(sph_add_where_)(M m, R sum, R a)
+{
+    return (R)_mm512_mask_add_pd((__m512d)sum, m, (__m512d)sum, (__m512d)a);
+}
+SPH_INLINE R SPH_OF_ISA(sph_sub_where_)(M m, R sum, R a)
+{
+    return (R)_mm512_mask_sub_pd((__m512d)sum, m, (__m512d)sum, (__m512d)a);
+}
+#endif
+#else
+typedef B M;
+SPH_INLINE M SPH_OF_ISA(sph_within_)(R r2, R reach2, B number, B j)
+{
+    return (B)(r2 < reach2) & ~(B)(number == j);
+}
+SPH_INLINE B SPH_OF_ISA(sph_mask_of_)(M m)
+{
+    return m;
+}
+SPH_INLINE R SPH_OF_ISA(sph_add_where_)(M m, R sum, R a)
+{
+    return sum + (R)(m & (B)a);
+}
+SPH_INLINE R SPH_OF_ISA(sph_sub_where_)(M m, R sum, R a)
+{
+    return sum - (R)(m & (B)a);
+}
+#endif
+
+/* 1 / sqrt(a), and 0 of 0. */
+SPH_INLINE R SPH_OF_ISA(sph_rsqrt_)(R a)
+{
+    const R zero = {0};
+    return SPH_OF_ISA(sph_select_)((B)(a > zero), (T)1.0 / SPH_OF_ISA(sph_sqrt_)(a), zero);
+}
+
+/* -- Functions --------------------------------------------------------------------------------- */
 
 /* libm lane by lane: right to its own rounding, and slow; for bodies that cannot do without. */
 SPH_INLINE R SPH_OF_ISA(sph_pow_where_)(B m, R a, R b)
 {
-    R out = SPH_OF_ISA(sph_num_)(1.0);
+    R out = SPH_OF_ISA(sph_num_)((T)1.0);
     for (int l = 0; l < SPH_WIDTH; l++)
         if (m[l])
-            out[l] = __builtin_pow(a[l], b[l]);
+            out[l] = (T)__builtin_pow((double)a[l], (double)b[l]);
     return out;
 }
 
 SPH_INLINE R SPH_OF_ISA(sph_ipow_)(R a, uint32_t n)
 {
     /* n is at most 15 and the same for every lane: four predictable branches. */
-    R out = (n & 1u) ? a : SPH_OF_ISA(sph_num_)(1.0);
+    R out = (n & 1u) ? a : SPH_OF_ISA(sph_num_)((T)1.0);
     a *= a;
     if (n & 2u)
         out *= a;
@@ -73,7 +280,47 @@ SPH_INLINE R SPH_OF_ISA(sph_ipow_)(R a, uint32_t n)
     return out;
 }
 
-SPH_INLINE R SPH_OF_ISA(sph_sum_of_powers_)(R t, uint32_t power, uint32_t n, const double *c)
+/* -- Kernels ----------------------------------------------------------------------------------- */
+
+/* A kernel's form as a loop keeps it: in its own precision, the norm in the coefficients. */
+typedef struct FORM {
+    const sph_kernel_form *form;
+    T support;
+    uint32_t n_pieces, en_coef; /* 0: W' / q is no such sum */
+    struct {
+        T knot;
+        uint32_t power, n_coef, dpower, dn_coef;
+        T c[SPH_KERNEL_COEFS], d[SPH_KERNEL_COEFS], e[SPH_KERNEL_COEFS]; /* e: of W' / q */
+    } piece[SPH_KERNEL_KNOTS];
+} FORM;
+
+SPH_INLINE void SPH_OF_ISA(sph_form_)(FORM *out, const sph_kernel_form *form)
+{
+    out->form = form;
+    out->support = (T)form->support;
+    out->n_pieces = form->n_pieces;
+    out->en_coef = 0;
+    for (uint32_t k = 0; k < form->n_pieces; k++) {
+        const sph_kernel_piece *p = &form->piece[k];
+        out->piece[k].knot = (T)p->knot;
+        out->piece[k].power = p->power;
+        out->piece[k].n_coef = p->n_coef;
+        out->piece[k].dpower = p->dpower;
+        out->piece[k].dn_coef = p->dn_coef;
+        for (uint32_t n = 0; n < SPH_KERNEL_COEFS; n++) {
+            out->piece[k].c[n] = (T)(p->c[n] * form->norm);
+            out->piece[k].d[n] = (T)(p->d[n] * form->norm);
+        }
+    }
+    if (form->n_pieces == 1) {
+        double e[SPH_KERNEL_COEFS];
+        out->en_coef = sph_kernel_over_q(&form->piece[0], e);
+        for (uint32_t n = 0; n < out->en_coef; n++)
+            out->piece[0].e[n] = (T)(e[n] * form->norm);
+    }
+}
+
+SPH_INLINE R SPH_OF_ISA(sph_sum_of_powers_)(R t, uint32_t power, uint32_t n, const T *c)
 {
     R sum = SPH_OF_ISA(sph_num_)(c[n - 1]);
     for (uint32_t k = n - 1; k-- > 0;)
@@ -87,42 +334,71 @@ static __attribute__((noinline, unused)) R SPH_OF_ISA(sph_cubic_)(const sph_kern
 {
     R out = q;
     for (int l = 0; l < SPH_WIDTH; l++)
-        out[l] = sph_kernel_cubic(kernel, q[l], slope);
+        out[l] = (T)sph_kernel_cubic(kernel, (double)q[l], slope);
     return out;
 }
 
-SPH_INLINE R SPH_OF_ISA(sph_w_)(const sph_kernel_form *kernel, R q)
+/* shape: SPH_SHAPE_..., a constant where it is called. */
+SPH_INLINE R SPH_OF_ISA(sph_w_)(const FORM *f, R q, int shape)
 {
     const R zero = {0};
     R sum = zero;
-    if (__builtin_expect(kernel->n_table != 0, 0))
-        return SPH_OF_ISA(sph_cubic_)(kernel, q, 0);
-    for (uint32_t k = 0; k < kernel->n_pieces; k++) {
-        const sph_kernel_piece *p = &kernel->piece[k];
-        R t = p->knot - q;
-        t = SPH_OF_ISA(sph_select_)((B)(t > zero), t, zero);
-        sum += SPH_OF_ISA(sph_sum_of_powers_)(t, p->power, p->n_coef, p->c);
+    if (shape == SPH_SHAPE_C2 || shape == SPH_SHAPE_C4) {
+        const R t = SPH_OF_ISA(sph_max_)(f->piece[0].knot - q, zero);
+        return shape == SPH_SHAPE_C2 ? SPH_OF_ISA(sph_sum_of_powers_)(t, 4, 2, f->piece[0].c)
+                                     : SPH_OF_ISA(sph_sum_of_powers_)(t, 6, 3, f->piece[0].c);
     }
-    return sum * kernel->norm;
+    if (__builtin_expect(f->form->n_table != 0, 0))
+        return SPH_OF_ISA(sph_cubic_)(f->form, q, 0);
+    for (uint32_t k = 0; k < f->n_pieces; k++) {
+        const R t = SPH_OF_ISA(sph_max_)(f->piece[k].knot - q, zero);
+        sum +=
+            SPH_OF_ISA(sph_sum_of_powers_)(t, f->piece[k].power, f->piece[k].n_coef, f->piece[k].c);
+    }
+    return sum;
 }
 
-SPH_INLINE R SPH_OF_ISA(sph_dw_)(const sph_kernel_form *kernel, R q)
+SPH_INLINE R SPH_OF_ISA(sph_dw_)(const FORM *f, R q, int shape)
 {
     const R zero = {0};
     R sum = zero;
-    if (__builtin_expect(kernel->n_table != 0, 0))
-        return SPH_OF_ISA(sph_cubic_)(kernel, q, 1);
-    for (uint32_t k = 0; k < kernel->n_pieces; k++) {
-        const sph_kernel_piece *p = &kernel->piece[k];
-        R t = p->knot - q;
-        B in = (B)(t > zero);
-        t = SPH_OF_ISA(sph_select_)(in, t, zero);
-        R d = SPH_OF_ISA(sph_sum_of_powers_)(t, p->dpower, p->dn_coef, p->d);
+    if (shape == SPH_SHAPE_C2 || shape == SPH_SHAPE_C4) {
+        const R t = SPH_OF_ISA(sph_max_)(f->piece[0].knot - q, zero);
+        return shape == SPH_SHAPE_C2 ? SPH_OF_ISA(sph_sum_of_powers_)(t, 3, 2, f->piece[0].d)
+                                     : SPH_OF_ISA(sph_sum_of_powers_)(t, 5, 3, f->piece[0].d);
+    }
+    if (__builtin_expect(f->form->n_table != 0, 0))
+        return SPH_OF_ISA(sph_cubic_)(f->form, q, 1);
+    for (uint32_t k = 0; k < f->n_pieces; k++) {
+        const R t = SPH_OF_ISA(sph_max_)(f->piece[k].knot - q, zero);
+        const R d = SPH_OF_ISA(sph_sum_of_powers_)(t, f->piece[k].dpower, f->piece[k].dn_coef,
+                                                   f->piece[k].d);
         /* A derivative of power 0 does not vanish by itself past its knot. */
-        sum += SPH_OF_ISA(sph_select_)(in, d, zero);
+        sum += f->piece[k].dpower
+                   ? d
+                   : SPH_OF_ISA(sph_select_)((B)(f->piece[k].knot - q > zero), d, zero);
     }
-    return sum * kernel->norm;
+    return sum;
 }
 
+SPH_INLINE R SPH_OF_ISA(sph_dw_q_)(const FORM *f, R q, int shape)
+{
+    const R zero = {0};
+    if (shape == SPH_SHAPE_C2 || shape == SPH_SHAPE_C4 || f->en_coef) {
+        const R t = SPH_OF_ISA(sph_max_)(f->piece[0].knot - q, zero);
+        return shape == SPH_SHAPE_C2   ? SPH_OF_ISA(sph_sum_of_powers_)(t, 3, 1, f->piece[0].e)
+               : shape == SPH_SHAPE_C4 ? SPH_OF_ISA(sph_sum_of_powers_)(t, 5, 2, f->piece[0].e)
+                                       : SPH_OF_ISA(sph_sum_of_powers_)(t, f->piece[0].dpower,
+                                                                        f->en_coef, f->piece[0].e);
+    }
+    return SPH_OF_ISA(sph_select_)((B)(q > zero), SPH_OF_ISA(sph_dw_)(f, q, shape) / q, zero);
+}
+
+#undef SPH_MM
+#undef SPH_V
+#undef T
 #undef R
 #undef B
+#undef M
+#undef FORM
+#undef INT

@@ -9,23 +9,39 @@
  * optimisation puts the assembler's text and the code that reads it into different objects. */
 #define SPH_DEVICE_WORDS(a) #a
 #define SPH_DEVICE_SYMBOL(a) SPH_DEVICE_WORDS(a)
-#define SPH_DEVICE_EMBED(symbol, name, file)                                                       \
+#define SPH_DEVICE_INCBIN(file) ".incbin \"" file "\"\n"
+#define SPH_DEVICE_EMBED(symbol, name, texts)                                                      \
     __asm__(".pushsection .rodata\n"                                                               \
             ".globl " name "\n"                                                                    \
             ".hidden " name "\n"                                                                   \
-            ".type " name ", %object\n" name ":\n"                                                 \
-            ".incbin \"" file "\"\n"                                                               \
-            ".byte 0\n"                                                                            \
+            ".type " name ", %object\n" name ":\n" texts ".byte 0\n"                               \
             ".size " name ", . - " name "\n"                                                       \
             ".popsection\n");                                                                      \
     extern __attribute__((visibility("hidden"))) const char symbol[]
 #define SPH_DEVICE_TEXT SPH_CAT(sph_text, SPH_LOOP_DEVICE)
 #define SPH_DEVICE_MACROS SPH_CAT(sph_macros, SPH_LOOP_DEVICE)
+/* Several bodies: each in a scope of its own. */
+#define SPH_DEVICE_NEXT(file) ".ascii \"}\\n{\\n\"\n" SPH_DEVICE_INCBIN(file)
+#if defined(SPH_LOOP_BODY_4)
+#define SPH_DEVICE_BODIES                                                                          \
+    SPH_DEVICE_INCBIN(SPH_LOOP_BODY)                                                               \
+    SPH_DEVICE_NEXT(SPH_LOOP_BODY_2)                                                               \
+    SPH_DEVICE_NEXT(SPH_LOOP_BODY_3) SPH_DEVICE_NEXT(SPH_LOOP_BODY_4)
+#elif defined(SPH_LOOP_BODY_3)
+#define SPH_DEVICE_BODIES                                                                          \
+    SPH_DEVICE_INCBIN(SPH_LOOP_BODY)                                                               \
+    SPH_DEVICE_NEXT(SPH_LOOP_BODY_2) SPH_DEVICE_NEXT(SPH_LOOP_BODY_3)
+#elif defined(SPH_LOOP_BODY_2)
+#define SPH_DEVICE_BODIES SPH_DEVICE_INCBIN(SPH_LOOP_BODY) SPH_DEVICE_NEXT(SPH_LOOP_BODY_2)
+#else
+#define SPH_DEVICE_BODIES SPH_DEVICE_INCBIN(SPH_LOOP_BODY)
+#endif
 
 SPH_BEGIN_DECLS
-SPH_DEVICE_EMBED(SPH_DEVICE_TEXT, SPH_DEVICE_SYMBOL(SPH_DEVICE_TEXT), SPH_LOOP_BODY);
+SPH_DEVICE_EMBED(SPH_DEVICE_TEXT, SPH_DEVICE_SYMBOL(SPH_DEVICE_TEXT), SPH_DEVICE_BODIES);
 #ifdef SPH_LOOP_PRELUDE
-SPH_DEVICE_EMBED(SPH_DEVICE_MACROS, SPH_DEVICE_SYMBOL(SPH_DEVICE_MACROS), SPH_LOOP_PRELUDE);
+SPH_DEVICE_EMBED(SPH_DEVICE_MACROS, SPH_DEVICE_SYMBOL(SPH_DEVICE_MACROS),
+                 SPH_DEVICE_INCBIN(SPH_LOOP_PRELUDE));
 #define SPH_DEVICE_PRELUDE SPH_DEVICE_MACROS, SPH_LOOP_PRELUDE
 #else
 #define SPH_DEVICE_PRELUDE NULL, NULL
@@ -76,6 +92,9 @@ static const sph_device_body SPH_LOOP_DEVICE = {
 #undef SPH_DEVICE_WORDS
 #undef SPH_DEVICE_SYMBOL
 #undef SPH_DEVICE_EMBED
+#undef SPH_DEVICE_INCBIN
+#undef SPH_DEVICE_NEXT
+#undef SPH_DEVICE_BODIES
 #undef SPH_DEVICE_TEXT
 #undef SPH_DEVICE_MACROS
 #undef SPH_DEVICE_PRELUDE

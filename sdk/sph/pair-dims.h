@@ -1,56 +1,67 @@
-/* sph/pair-dims.h -- one instruction set's loops of a sweep, for each dimension; the inside of
- * pair-loop.h, with its words for the body switched on here and off again below. */
+/* sph/pair-dims.h -- one instruction set's loops of a sweep, for each dimension and for the kernels
+ * that are compiled in; the inside of pair-loop.h. */
 
-#define R SPH_OF_ISA(sph_lanes)
-#define B SPH_OF_ISA(sph_mask)
-#define sph_num(a) SPH_OF_ISA(sph_num_)(a)
-#define sph_select(m, a, b) SPH_OF_ISA(sph_select_)((B)(m), (a), (b))
-#define sph_max(a, b) SPH_OF_ISA(sph_select_)((B)((a) > (b)), (a), (b))
-#define sph_min(a, b) SPH_OF_ISA(sph_select_)((B)((a) < (b)), (a), (b))
-#define sph_abs(a) SPH_OF_ISA(sph_select_)((B)((a) < sph_num(0.0)), -(a), (a))
-#define sph_sign(a)                                                                                \
-    (sph_select((a) > sph_num(0.0), sph_num(1.0), sph_num(0.0)) -                                  \
-     sph_select((a) < sph_num(0.0), sph_num(1.0), sph_num(0.0)))
-#define sph_sqrt(a) SPH_OF_ISA(sph_sqrt_)(a)
-#define sph_pow_where(m, a, b) SPH_OF_ISA(sph_pow_where_)((B)(m), (a), (b))
-#define sph_ipow(a, n) SPH_OF_ISA(sph_ipow_)((a), (n))
-#define sph_w(kernel, q) SPH_OF_ISA(sph_w_)((kernel), (q))
-#define sph_dw(kernel, q) SPH_OF_ISA(sph_dw_)((kernel), (q))
-#define sph_add(acc, value) ((acc) += sph_select(in, (value), sph_num(0.0)))
-#define sph_take_min(acc, value) ((acc) = sph_min(sph_select(in, (value), (acc)), (acc)))
-#define sph_take_max(acc, value) ((acc) = sph_max(sph_select(in, (value), (acc)), (acc)))
+#include <sph/pair-words.h>
 
+#ifdef SPH_FORM_LIST
+#define SPH_LOOP_FORM <sph/pair-list.h>
+#else
+#define SPH_LOOP_FORM <sph/pair-group.h>
+#endif
+/* sweep_avx2_f64_3_0: the function's name; the last is the kernel's shape. */
+#define SPH_LOOP_NAME SPH_LOOP_NAMED(DIM, SPH_SHAPE)
+#define SPH_LOOP_NAMED(dim, shape) SPH_CAT(SPH_CAT(SPH_CAT(SPH_LOOP, SPH_ISA), dim), shape)
+
+#define SPH_SHAPE 0
 #define DIM 1
-#define SPH_LOOP_NAME(suffix) SPH_CAT(SPH_CAT(SPH_LOOP, suffix), 1)
-#include <sph/pair-group.h>
+#include SPH_LOOP_FORM
 #undef DIM
-#undef SPH_LOOP_NAME
-
 #define DIM 2
-#define SPH_LOOP_NAME(suffix) SPH_CAT(SPH_CAT(SPH_LOOP, suffix), 2)
-#include <sph/pair-group.h>
+#include SPH_LOOP_FORM
 #undef DIM
-#undef SPH_LOOP_NAME
-
 #define DIM 3
-#define SPH_LOOP_NAME(suffix) SPH_CAT(SPH_CAT(SPH_LOOP, suffix), 3)
-#include <sph/pair-group.h>
+#include SPH_LOOP_FORM
 #undef DIM
-#undef SPH_LOOP_NAME
+#undef SPH_SHAPE
 
-#undef R
-#undef B
-#undef sph_num
-#undef sph_select
-#undef sph_max
-#undef sph_min
-#undef sph_abs
-#undef sph_sign
-#undef sph_sqrt
-#undef sph_pow_where
-#undef sph_ipow
-#undef sph_w
-#undef sph_dw
-#undef sph_add
-#undef sph_take_min
-#undef sph_take_max
+#if !defined(SPH_LOOP_ANY_KERNEL)
+#define SPH_SHAPE 1
+#define DIM 2
+#include SPH_LOOP_FORM
+#undef DIM
+#define DIM 3
+#include SPH_LOOP_FORM
+#undef DIM
+#undef SPH_SHAPE
+#define SPH_SHAPE 2
+#define DIM 2
+#include SPH_LOOP_FORM
+#undef DIM
+#define DIM 3
+#include SPH_LOOP_FORM
+#undef DIM
+#undef SPH_SHAPE
+#ifdef SPH_LOOP_UNIFORM_H
+#define SPH_SHAPE 3
+#define DIM 2
+#include SPH_LOOP_FORM
+#undef DIM
+#define DIM 3
+#include SPH_LOOP_FORM
+#undef DIM
+#undef SPH_SHAPE
+#define SPH_SHAPE 4
+#define DIM 2
+#include SPH_LOOP_FORM
+#undef DIM
+#define DIM 3
+#include SPH_LOOP_FORM
+#undef DIM
+#undef SPH_SHAPE
+#endif
+#endif
+
+#undef SPH_LOOP_NAME
+#undef SPH_LOOP_NAMED
+#undef SPH_LOOP_FORM
+#include <sph/pair-words.h>

@@ -1,116 +1,113 @@
-/* sph/pair-group.h -- the loop itself, for one instruction set and dimension; the inside of
- * pair-dims.h. SPH_WIDTH destinations of a group stand in the lanes of R; their common source list
- * is walked once, each source broadcast: no gather, no horizontal sum, no scatter. */
+/* sph/pair-group.h -- the loop over groups, for one instruction set, dimension and shape of kernel;
+ * the inside of pair-dims.h. SPH_WIDTH destinations of a group stand in the lanes of R; their common
+ * sources are walked once, each broadcast: no gather, no horizontal sum, no scatter. */
 
-#define SPH_P(column, c) ((double *)(column).data + (size_t)(c) * (column).plane)
+#define SPH_HELD T
+#include <sph/pair-columns.h>
 
-/* Destination values into lanes. */
+/* Destination values into lanes; source values, the same in every lane. */
 #define SPH_I_S(name, k) const R name##_i = SPH_OF_ISA(sph_load_)(SPH_P(b->dst[k], 0) + i);
-#define SPH_I_V(name, k)                                                                           \
-    R name##_i[DIM];                                                                               \
-    for (int c = 0; c < DIM; c++)                                                                  \
-        name##_i[c] = SPH_OF_ISA(sph_load_)(SPH_P(b->dst[k], c) + i);
-#define SPH_I_M(name, k)                                                                           \
-    R name##_i[DIM * DIM];                                                                         \
-    for (int c = 0; c < DIM * DIM; c++)                                                            \
-        name##_i[c] = SPH_OF_ISA(sph_load_)(SPH_P(b->dst[k], c) + i);
-/* Source columns, then their values broadcast. */
-#define SPH_S_S(name, k) const double *const name##_s = SPH_P(b->src[k], 0);
-#define SPH_S_V(name, k)                                                                           \
-    const double *name##_s[DIM];                                                                   \
-    for (int c = 0; c < DIM; c++)                                                                  \
-        name##_s[c] = SPH_P(b->src[k], c);
-#define SPH_S_M(name, k)                                                                           \
-    const double *name##_s[DIM * DIM];                                                             \
-    for (int c = 0; c < DIM * DIM; c++)                                                            \
-        name##_s[c] = SPH_P(b->src[k], c);
+#define SPH_I_V(name, k) SPH_I_N(name, k, DIM)
+#define SPH_I_M(name, k) SPH_I_N(name, k, DIM *DIM)
+#define SPH_I_N(name, k, n)                                                                        \
+    R name##_i[n];                                                                                 \
+    for (int sph_c = 0; sph_c < n; sph_c++)                                                        \
+        name##_i[sph_c] = SPH_OF_ISA(sph_load_)(SPH_P(b->dst[k], sph_c) + i);
 #define SPH_J_S(name, k) const R name##_j = sph_num(name##_s[j]);
-#define SPH_J_V(name, k)                                                                           \
-    R name##_j[DIM];                                                                               \
-    for (int c = 0; c < DIM; c++)                                                                  \
-        name##_j[c] = sph_num(name##_s[c][j]);
-#define SPH_J_M(name, k)                                                                           \
-    R name##_j[DIM * DIM];                                                                         \
-    for (int c = 0; c < DIM * DIM; c++)                                                            \
-        name##_j[c] = sph_num(name##_s[c][j]);
-/* Accumulators: made, and stored for the lanes that are particles. */
-#define SPH_A_S(name, k) R name = {0};
-#define SPH_A_V(name, k) R name[DIM] = {{0}};
-#define SPH_A_M(name, k) R name[DIM * DIM] = {{0}};
-#define SPH_A_MIN(name, k) R name = sph_num(INFINITY);
-#define SPH_A_MAX(name, k) R name = sph_num(-INFINITY);
-#define SPH_O_S(name, k)                                                                           \
-    for (int l = 0; l < lanes; l++)                                                                \
-        SPH_P(b->dst[k], 0)[i + (uint64_t)l] += name[l];
-#define SPH_O_V(name, k)                                                                           \
-    for (int c = 0; c < DIM; c++)                                                                  \
+#define SPH_J_V(name, k) SPH_J_N(name, DIM)
+#define SPH_J_M(name, k) SPH_J_N(name, DIM *DIM)
+#define SPH_J_N(name, n)                                                                           \
+    R name##_j[n];                                                                                 \
+    for (int sph_c = 0; sph_c < n; sph_c++)                                                        \
+        name##_j[sph_c] = sph_num(name##_s[sph_c][j]);
+/* Stores the lanes that are particles. */
+#define SPH_O_S(name, k) SPH_O_N(&name, k, 1)
+#define SPH_O_V(name, k) SPH_O_N(name, k, DIM)
+#define SPH_O_M(name, k) SPH_O_N(name, k, DIM *DIM)
+#define SPH_O_N(array, k, n)                                                                       \
+    for (int sph_c = 0; sph_c < n; sph_c++)                                                        \
         for (int l = 0; l < lanes; l++)                                                            \
-            SPH_P(b->dst[k], c)[i + (uint64_t)l] += name[c][l];
-#define SPH_O_M(name, k)                                                                           \
-    for (int c = 0; c < DIM * DIM; c++)                                                            \
-        for (int l = 0; l < lanes; l++)                                                            \
-            SPH_P(b->dst[k], c)[i + (uint64_t)l] += name[c][l];
-#define SPH_O_MIN(name, k)                                                                         \
-    for (int l = 0; l < lanes; l++)                                                                \
-        SPH_P(b->dst[k], 0)[i + (uint64_t)l] = fmin(SPH_P(b->dst[k], 0)[i + (uint64_t)l], name[l]);
-#define SPH_O_MAX(name, k)                                                                         \
-    for (int l = 0; l < lanes; l++)                                                                \
-        SPH_P(b->dst[k], 0)[i + (uint64_t)l] = fmax(SPH_P(b->dst[k], 0)[i + (uint64_t)l], name[l]);
-#define SPH_PARAM_OF(name, k) const double name = b->param[k];
+            SPH_P(b->dst[k], sph_c)[i + (uint64_t)l] += (array)[sph_c][l];
+#define SPH_O_MIN(name, k) SPH_O_LEAST(name, k, <)
+#define SPH_O_MAX(name, k) SPH_O_LEAST(name, k, >)
+#define SPH_O_LEAST(name, k, is)                                                                   \
+    for (int l = 0; l < lanes; l++) {                                                              \
+        T *const sph_o = SPH_P(b->dst[k], 0) + i + l;                                              \
+        *sph_o = name[l] is * sph_o || name[l] != name[l] ? name[l] : *sph_o;                      \
+    }
 
-static sph_status SPH_LOOP_NAME(SPH_ISA)(const sph_batch *b)
+static sph_status SPH_LOOP_NAME(const sph_batch *b)
 {
-    const sph_kernel_form *const K = b->kernel;
-    const double *x_s[DIM];
+    FORM sph_local;
+    SPH_OF_ISA(sph_form_)(&sph_local, b->kernel);
+    const FORM *const K = &sph_local;
+    const SPH_X_HELD *x_s[DIM];
     for (int c = 0; c < DIM; c++)
-        x_s[c] = SPH_P(b->x_src, c);
-    const double *const h_s = SPH_P(b->h_src, 0);
+        x_s[c] = SPH_X(b->x_src, c);
+    const T *const h_s = SPH_P(b->h_src, 0);
+#if SPH_F32_WORDS
+    const T quantum = (T)b->quantum;
+#endif
     SPH_LOOP_J(SPH_S_S, SPH_S_V, SPH_S_M)
     SPH_LOOP_PARAM(SPH_PARAM_OF)
-    R lane_number;
-    for (int l = 0; l < SPH_WIDTH; l++)
-        lane_number[l] = l;
     const uint64_t end = b->first + b->count;
 
     for (uint64_t i = b->first; i < end; i += SPH_WIDTH) {
         const uint64_t sph_g = i / SPH_LANES;
         const int lanes = end - i < SPH_WIDTH ? (int)(end - i) : SPH_WIDTH;
+        /* What tells the self pair: no source has the number -1. */
+        B number;
+        for (int l = 0; l < SPH_WIDTH; l++)
+            number[l] = SPH_LOOP_SELF || !b->same ? -1 : (SPH_INT)i + l;
+#if SPH_F32_WORDS
+        B x_i[DIM];
+        for (int c = 0; c < DIM; c++)
+            x_i[c] = *(const B *)(const void *)(SPH_X(b->x_dst, c) + i);
+#else
         R x_i[DIM];
         for (int c = 0; c < DIM; c++)
-            x_i[c] = SPH_OF_ISA(sph_load_)(SPH_P(b->x_dst, c) + i);
+            x_i[c] = SPH_OF_ISA(sph_load_)(SPH_X(b->x_dst, c) + i);
+#endif
         const R h_i = SPH_OF_ISA(sph_load_)(SPH_P(b->h_dst, 0) + i);
-        const R hinv_i = 1.0 / h_i;
-        const R number = lane_number + (double)i;
+        const R hinv_i = (T)1.0 / h_i, reach2_i = K->support * h_i * (K->support * h_i);
+        (void)hinv_i;
         SPH_LOOP_I(SPH_I_S, SPH_I_V, SPH_I_M)
         SPH_LOOP_SUM(SPH_A_S, SPH_A_V, SPH_A_M)
         SPH_LOOP_MIN(SPH_A_MIN)
         SPH_LOOP_MAX(SPH_A_MAX)
 
-        for (uint64_t sph_k = b->begin[sph_g]; sph_k < b->begin[sph_g + 1]; sph_k++) {
-            const uint32_t j = b->list[sph_k];
-            R dx[DIM];
-            R r2 = {0};
-            for (int c = 0; c < DIM; c++) {
-                dx[c] = x_i[c] - x_s[c][j];
-                r2 += dx[c] * dx[c];
-            }
-            const R h_j = sph_num(h_s[j]);
-            const R reach = K->support * (SPH_LOOP_REACH == SPH_GATHER ? h_i : sph_max(h_i, h_j));
-            B in = (B)(r2 < reach * reach);
-            const B self = (B)(number == sph_num(b->same ? (double)j : -1.0));
-#if !SPH_LOOP_SELF
-            in &= ~self;
+        for (uint64_t sph_s = b->begin[sph_g]; sph_s < b->begin[sph_g + 1]; sph_s++) {
+            const uint32_t sph_base = b->span[sph_s].base, sph_n = b->span[sph_s].count;
+            const uint16_t *const sph_steps = b->list + b->span[sph_s].first;
+            for (uint32_t sph_k = 0; sph_k < sph_n; sph_k++) {
+                const size_t j = (size_t)sph_base + sph_steps[sph_k];
+                R dx[DIM];
+                R r2 = {0};
+                for (int c = 0; c < DIM; c++) {
+#if SPH_F32_WORDS
+                    dx[c] = __builtin_convertvector(x_i[c] - x_s[c][j], R) * quantum;
+#else
+                    dx[c] = x_i[c] - x_s[c][j];
 #endif
-            const R r = sph_sqrt(r2);
-            const R rinv = sph_select(r2 > sph_num(0.0), 1.0 / r, sph_num(0.0));
-            const R hinv_j = sph_num(1.0 / h_s[j]);
-            (void)self;
-            (void)rinv;
-            (void)hinv_j;
-            (void)hinv_i;
-            SPH_LOOP_J(SPH_J_S, SPH_J_V, SPH_J_M)
-            {
-#include SPH_LOOP_BODY
+                    r2 += dx[c] * dx[c];
+                }
+                const R h_j = SPH_UNIFORM ? h_i : sph_num(h_s[j]);
+                const R hinv_j = SPH_UNIFORM ? hinv_i : sph_num((T)1.0 / h_s[j]);
+                const T reach_j = SPH_UNIFORM ? (T)0.0 : K->support * h_s[j];
+                const R reach2 = SPH_UNIFORM || SPH_LOOP_REACH == SPH_GATHER
+                                     ? reach2_i
+                                     : sph_max(reach2_i, sph_num(reach_j * reach_j));
+                const SPH_OF_ISA(sph_lanes_in) sph_within =
+                    SPH_OF_ISA(sph_within_)(r2, reach2, number, SPH_OF_ISA(sph_whole_)((SPH_INT)j));
+                const B in = SPH_OF_ISA(sph_mask_of_)(sph_within);
+                SPH_ROOTS(r2);
+                (void)in;
+                (void)rinv;
+                (void)r;
+                (void)h_j;
+                (void)hinv_j;
+                SPH_LOOP_J(SPH_J_S, SPH_J_V, SPH_J_M)
+#include <sph/pair-bodies.h>
             }
         }
         SPH_LOOP_SUM(SPH_O_S, SPH_O_V, SPH_O_M)
@@ -120,24 +117,20 @@ static sph_status SPH_LOOP_NAME(SPH_ISA)(const sph_batch *b)
     return SPH_OK;
 }
 
-#undef SPH_P
 #undef SPH_I_S
 #undef SPH_I_V
 #undef SPH_I_M
-#undef SPH_S_S
-#undef SPH_S_V
-#undef SPH_S_M
+#undef SPH_I_N
 #undef SPH_J_S
 #undef SPH_J_V
 #undef SPH_J_M
-#undef SPH_A_S
-#undef SPH_A_V
-#undef SPH_A_M
-#undef SPH_A_MIN
-#undef SPH_A_MAX
+#undef SPH_J_N
 #undef SPH_O_S
 #undef SPH_O_V
 #undef SPH_O_M
+#undef SPH_O_N
 #undef SPH_O_MIN
 #undef SPH_O_MAX
-#undef SPH_PARAM_OF
+#undef SPH_O_LEAST
+#include <sph/pair-columns.h>
+#undef SPH_HELD

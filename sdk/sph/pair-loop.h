@@ -13,6 +13,13 @@
  *   #define SPH_LOOP_REACH SPH_SYMMETRIC      or SPH_GATHER
  *   #define SPH_LOOP_SELF 1                   1: the body also gets the self pair (r = 0)
  *   #define SPH_LOOP_BODY "my_sweep.body.h"   the body, found by the include path
+ *   #define SPH_LOOP_BODY_2 "other.body.h"    optional, as _3 and _4: more bodies of the same pair,
+ *                                             in one sweep (fusion.h)
+ *   #define SPH_LOOP_F32                      optional: floats too (say so in sph_function.reals)
+ *   #define SPH_LOOP_UNIFORM_H                optional: loops of their own for smoothing lengths that
+ *                                             are all the same, where h_j is h_i
+ *   #define SPH_LOOP_ANY_KERNEL               optional, for sweeps that are seldom run: no kernels
+ *                                             are compiled in, a third of the code
  *   #define SPH_LOOP_DEVICE my_device         optional: the same body for devices, see below
  *   #include <sph/pair-loop.h>
  *
@@ -66,27 +73,86 @@
 #define SPH_LOOP_SELF 0
 #endif
 
+#ifdef SPH_LOOP_F32
+#define SPH_EACH_F32
+#endif
 #define SPH_EACH_ISA <sph/pair-dims.h>
 #include <sph/each-isa.h>
 #undef SPH_EACH_ISA
+#undef SPH_EACH_F32
+#include <sph/pair-references.h>
+
+/* Of one instruction set and precision, by dimension and shape of the kernel. */
+#define SPH_LOOP_OF(isa, dim, shape) SPH_CAT(SPH_CAT(SPH_CAT(SPH_LOOP, isa), dim), shape)
+#define SPH_LOOPS_ANY(isa, dim)                                                                    \
+    {                                                                                              \
+        SPH_LOOP_OF(isa, dim, 0), SPH_LOOP_OF(isa, dim, 0), SPH_LOOP_OF(isa, dim, 0),              \
+            SPH_LOOP_OF(isa, dim, 0), SPH_LOOP_OF(isa, dim, 0)                                     \
+    }
+#if defined(SPH_LOOP_ANY_KERNEL)
+#define SPH_LOOPS_SHAPED(isa, dim) SPH_LOOPS_ANY(isa, dim)
+#elif defined(SPH_LOOP_UNIFORM_H)
+#define SPH_LOOPS_SHAPED(isa, dim)                                                                 \
+    {                                                                                              \
+        SPH_LOOP_OF(isa, dim, 0), SPH_LOOP_OF(isa, dim, 1), SPH_LOOP_OF(isa, dim, 2),              \
+            SPH_LOOP_OF(isa, dim, 3), SPH_LOOP_OF(isa, dim, 4)                                     \
+    }
+#else
+#define SPH_LOOPS_SHAPED(isa, dim)                                                                 \
+    {                                                                                              \
+        SPH_LOOP_OF(isa, dim, 0), SPH_LOOP_OF(isa, dim, 1), SPH_LOOP_OF(isa, dim, 2),              \
+            SPH_LOOP_OF(isa, dim, 1), SPH_LOOP_OF(isa, dim, 2)                                     \
+    }
+#endif
+#define SPH_LOOPS(isa)                                                                             \
+    {                                                                                              \
+        {0, 0, 0, 0, 0}, SPH_LOOPS_ANY(isa, 1), SPH_LOOPS_SHAPED(isa, 2), SPH_LOOPS_SHAPED(isa, 3) \
+    }
 
 static sph_status SPH_LOOP(const sph_batch *b)
 {
-    typedef sph_status (*loop)(const sph_batch *);
-    static const loop base[4] = {NULL, SPH_CAT(SPH_LOOP, base_1), SPH_CAT(SPH_LOOP, base_2),
-                                 SPH_CAT(SPH_LOOP, base_3)};
-#if defined(__x86_64__) && !defined(SPH_NO_MULTIVERSION)
-    static const loop avx2[4] = {NULL, SPH_CAT(SPH_LOOP, avx2_1), SPH_CAT(SPH_LOOP, avx2_2),
-                                 SPH_CAT(SPH_LOOP, avx2_3)};
-    static const loop avx512[4] = {NULL, SPH_CAT(SPH_LOOP, avx512_1), SPH_CAT(SPH_LOOP, avx512_2),
-                                   SPH_CAT(SPH_LOOP, avx512_3)};
-    if (SPH_HAS_AVX512)
-        return avx512[b->dim](b);
-    if (SPH_HAS_AVX2)
-        return avx2[b->dim](b);
+    static const sph_range_fn reference[2][4] = {
+        {0, SPH_CAT(SPH_CAT(SPH_LOOP, one_f64), 1), SPH_CAT(SPH_CAT(SPH_LOOP, one_f64), 2),
+         SPH_CAT(SPH_CAT(SPH_LOOP, one_f64), 3)},
+        {0, SPH_CAT(SPH_CAT(SPH_LOOP, one_f80), 1), SPH_CAT(SPH_CAT(SPH_LOOP, one_f80), 2),
+         SPH_CAT(SPH_CAT(SPH_LOOP, one_f80), 3)}};
+    static const sph_range_fn loop[3][2][4][5] = {
+#ifdef SPH_LOOP_F32
+        {SPH_LOOPS(base_f64), SPH_LOOPS(base_f32)},
+#else
+        {SPH_LOOPS(base_f64)},
 #endif
-    return base[b->dim](b);
+#if defined(__x86_64__) && !defined(SPH_NO_MULTIVERSION)
+#ifdef SPH_LOOP_F32
+        {SPH_LOOPS(avx2_f64), SPH_LOOPS(avx2_f32)},
+        {SPH_LOOPS(avx512_f64), SPH_LOOPS(avx512_f32)},
+#else
+        {SPH_LOOPS(avx2_f64)},
+        {SPH_LOOPS(avx512_f64)},
+#endif
+#endif
+    };
+    const uint32_t path = b->path % SPH_PATH_ANY_KERNEL;
+    const int known = b->path < SPH_PATH_ANY_KERNEL ? sph_kernel_shape(b->kernel) : SPH_SHAPE_ANY;
+    const int shape = known && b->uniform_h ? known + 2 : known;
+    const int f32 = b->real == SPH_F32;
+    int isa = 0;
+#if defined(__x86_64__) && !defined(SPH_NO_MULTIVERSION)
+    if (SPH_HAS_AVX2 && path != SPH_PATH_BASE)
+        isa = SPH_HAS_AVX512 && path != SPH_PATH_AVX2 ? 2 : 1;
+#endif
+    if (!f32 && (path == SPH_PATH_REFERENCE || path == SPH_PATH_EXTENDED))
+        return reference[path == SPH_PATH_EXTENDED][b->dim](b);
+    if (!loop[isa][f32][b->dim][shape])
+        return b->host ? b->host->fail(b->host, SPH_E_INVALID, "this loop is for doubles")
+                       : SPH_E_INVALID;
+    return loop[isa][f32][b->dim][shape](b);
 }
+#undef SPH_LOOP_OF
+#undef SPH_LOOPS_ANY
+#undef SPH_LOOPS_SHAPED
+#undef SPH_LOOPS_LIST
+#undef SPH_LOOPS
 
 #ifdef SPH_LOOP_DEVICE
 #include <sph/pair-device.h>
@@ -102,5 +168,11 @@ static sph_status SPH_LOOP(const sph_batch *b)
 #undef SPH_LOOP_REACH
 #undef SPH_LOOP_SELF
 #undef SPH_LOOP_BODY
+#undef SPH_LOOP_BODY_2
+#undef SPH_LOOP_BODY_3
+#undef SPH_LOOP_BODY_4
+#undef SPH_LOOP_F32
+#undef SPH_LOOP_ANY_KERNEL
+#undef SPH_LOOP_UNIFORM_H
 #undef SPH_LOOP_DEVICE
 #undef SPH_LOOP_PRELUDE

@@ -8,6 +8,7 @@
 #include <sph/eos.h>
 #include <sph/exact.h>
 #include <sph/function.h>
+#include <sph/fusion.h>
 #include <sph/host.h>
 #include <sph/kernel.h>
 #include <sph/population.h>

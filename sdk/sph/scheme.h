@@ -3,6 +3,7 @@
 #ifndef SPH_SCHEME_H
 #define SPH_SCHEME_H
 
+#include <sph/batch.h>
 #include <sph/boundary.h>
 
 SPH_BEGIN_DECLS
@@ -19,6 +20,10 @@ typedef struct sph_scheme {
     double cfl;             /* default time-step number, a pure number > 0 */
     sph_list steps;         /* of sph_step, in order; at least one */
     sph_list rates;         /* of sph_rate: those no function declares, x by v among them */
+    uint32_t reals; /* what a run takes unless its user says otherwise: SPH_F32: pair sums in
+                             * floats, where positions' differences stay exact ("mixed"); 0 or SPH_F64:
+                             * doubles throughout */
+    uint32_t reserved2;
 } sph_scheme;
 
 SPH_END_DECLS

@@ -1,0 +1,93 @@
+/* momentum.c -- acceleration by pressure, artificial viscosity and gravity, and the time step that they
+ * allow. */
+#include "wcsph.h"
+#include <math.h>
+
+enum { M, V, RHO, P, CS, DRHO, A, DT };
+enum { ALPHA, BETA, GRAVITY };
+
+static const sph_param params[] = {WCSPH_VISCOSITY, WCSPH_GRAVITY};
+
+static const sph_prop props[] = {
+    WCSPH_M,
+    WCSPH_V,
+    WCSPH_RHO,
+    WCSPH_P,
+    WCSPH_CS,
+    SPH_PROP("drho", "kg/m^d/s", "rate of the density", SPH_SCALAR, SPH_DST_READ, 0.0),
+    WCSPH_A,
+    WCSPH_DT,
+};
+
+#define SPH_LOOP sweep
+#define SPH_LOOP_I(S, V_, M_) V_(v, V) S(rho, RHO) S(p, P) S(cs, CS)
+#define SPH_LOOP_J(S, V_, M_) S(m, M) SPH_LOOP_I(S, V_, M_)
+#define SPH_LOOP_SUM(S, V_, M_) V_(a, A)
+#define SPH_LOOP_PARAM(P_) P_(alpha, ALPHA) P_(beta, BETA)
+#define SPH_LOOP_BODY "momentum.body.h"
+#define SPH_LOOP_F32
+#define SPH_LOOP_UNIFORM_H
+#define SPH_LOOP_DEVICE wcsph_momentum_device
+#include <sph/pair-loop.h>
+
+/* Viscosity's bound is Monaghan's (1989, J. Comput. Phys. 82, 1, eq. 3.4) with |mu| <= h |div v|, of which
+ * the continuity equation has just given -drho / rho; the force's is sqrt(h / |a|), in units of which the
+ * scene's cfl is meant. */
+sph_status wcsph_finish(const sph_batch *b, const struct wcsph_finish *at)
+{
+    const double alpha = b->param[at->alpha], beta = b->param[at->beta];
+    const double *h = b->h_dst.data, *rho = b->dst[at->rho].data, *cs = b->dst[at->cs].data;
+    const double *drho = b->dst[at->drho].data;
+    double *dt = b->dst[at->dt].data;
+    for (uint64_t i = b->first; i < b->first + b->count; i++) {
+        double a2 = 0.0;
+        for (uint32_t c = 0; c < b->dim; c++) {
+            double *a = (double *)b->dst[at->a].data + (size_t)c * b->dst[at->a].plane + i;
+            *a += b->param[at->gravity + c];
+            a2 += *a * *a;
+        }
+        const double mu = h[i] * fabs(drho[i] / rho[i]);
+        const double sound = h[i] / (cs[i] + 0.6 * (alpha * cs[i] + beta * mu) + mu);
+        dt[i] = fmin(sound, sqrt(h[i] / sqrt(a2)));
+    }
+    return SPH_OK;
+}
+
+static sph_status finish(const sph_batch *b)
+{
+    static const struct wcsph_finish at = {RHO, CS, DRHO, A, DT, ALPHA, BETA, GRAVITY};
+    return wcsph_finish(b, &at);
+}
+
+static const sph_rate rates[] = {
+    SPH_RATE("v", "a", SPH_KICK),
+};
+
+static const sph_reduction reductions[] = {
+    SPH_REDUCTION("dt", "dt", SPH_REDUCE_MIN, SPH_USE_TIME_STEP),
+    SPH_REDUCTION("rho_max", "rho", SPH_REDUCE_MAX, SPH_USE_NONE),
+};
+
+static const sph_item item = {
+    .size = SIZE(sph_item),
+    .dims = SPH_ALL_DIMS,
+    .name = "wcsph-momentum",
+    .doc = "acceleration by pressure, artificial viscosity and gravity",
+    .source = "Monaghan 1992, doi:10.1146/annurev.aa.30.090192.002551, eq. 3.1, 4.1-4.2",
+    .params = SPH_LIST(params),
+    .props = SPH_LIST(props),
+};
+
+const sph_function wcsph_momentum = {
+    .size = SIZE(sph_function),
+    .shape = SPH_PAIR,
+    .item = &item,
+    .run = sweep,
+    .after = finish,
+    .reach = SPH_SYMMETRIC,
+    .reach_scale = 1.0,
+    .rates = SPH_LIST(rates),
+    .reductions = SPH_LIST(reductions),
+    .device = &wcsph_momentum_device,
+    .reals = SPH_F64 | SPH_F32,
+};

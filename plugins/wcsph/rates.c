@@ -1,0 +1,74 @@
+/* rates.c -- continuity and momentum in one sweep: what the host runs where the two follow each other on
+ * the same arrays (fusion.h). */
+#include "wcsph.h"
+#include <math.h>
+
+enum { M, V, RHO, P, CS, DRHO, A, DT };
+enum { ALPHA, BETA, GRAVITY };
+
+static const sph_param params[] = {WCSPH_VISCOSITY, WCSPH_GRAVITY};
+
+static const sph_prop props[] = {
+    WCSPH_M,
+    WCSPH_V,
+    WCSPH_RHO,
+    WCSPH_P,
+    WCSPH_CS,
+    SPH_PROP("drho", "kg/m^d/s", "rate of the density", SPH_SCALAR, SPH_DST_SUM | SPH_DST_READ,
+             0.0),
+    WCSPH_A,
+    WCSPH_DT,
+};
+
+#define SPH_LOOP sweep
+#define SPH_LOOP_I(S, V_, M_) V_(v, V) S(rho, RHO) S(p, P) S(cs, CS)
+#define SPH_LOOP_J(S, V_, M_) S(m, M) SPH_LOOP_I(S, V_, M_)
+#define SPH_LOOP_SUM(S, V_, M_) S(drho, DRHO) V_(a, A)
+#define SPH_LOOP_PARAM(P_) P_(alpha, ALPHA) P_(beta, BETA)
+#define SPH_LOOP_BODY "continuity.body.h"
+#define SPH_LOOP_BODY_2 "momentum.body.h"
+#define SPH_LOOP_F32
+#define SPH_LOOP_UNIFORM_H
+#define SPH_LOOP_DEVICE wcsph_rates_device
+#include <sph/pair-loop.h>
+
+static sph_status finish(const sph_batch *b)
+{
+    static const struct wcsph_finish at = {RHO, CS, DRHO, A, DT, ALPHA, BETA, GRAVITY};
+    return wcsph_finish(b, &at);
+}
+
+static const sph_rate rates[] = {
+    SPH_RATE("rho", "drho", SPH_KICK),
+    SPH_RATE("v", "a", SPH_KICK),
+};
+
+static const sph_reduction reductions[] = {
+    SPH_REDUCTION("dt", "dt", SPH_REDUCE_MIN, SPH_USE_TIME_STEP),
+    SPH_REDUCTION("rho_max", "rho", SPH_REDUCE_MAX, SPH_USE_NONE),
+};
+
+static const sph_item item = {
+    .size = SIZE(sph_item),
+    .dims = SPH_ALL_DIMS,
+    .name = "wcsph-rates",
+    .doc = "wcsph-continuity and wcsph-momentum in one sweep",
+    .source = "Monaghan 1992, doi:10.1146/annurev.aa.30.090192.002551; Monaghan 1994, "
+              "doi:10.1006/jcph.1994.1034",
+    .params = SPH_LIST(params),
+    .props = SPH_LIST(props),
+};
+
+const sph_function wcsph_rates = {
+    .size = SIZE(sph_function),
+    .shape = SPH_PAIR,
+    .item = &item,
+    .run = sweep,
+    .after = finish,
+    .reach = SPH_SYMMETRIC,
+    .reach_scale = 1.0,
+    .rates = SPH_LIST(rates),
+    .reductions = SPH_LIST(reductions),
+    .device = &wcsph_rates_device,
+    .reals = SPH_F64 | SPH_F32,
+};

@@ -134,8 +134,15 @@ static size_t plain_near_points(const struct packed_leaf *pack, const uint32_t *
     return found;
 }
 
+static void plain_steps(uint16_t *out, const uint32_t *found, size_t n, uint32_t base)
+{
+    for (size_t k = 0; k < n; k++) {
+        out[k] = (uint16_t)(found[k] - base);
+    }
+}
+
 static const struct filter plain = {plain_near_boxes, plain_pack, plain_near_leaves,
-                                    plain_near_points};
+                                    plain_near_points, plain_steps};
 
 const struct filter *filter_plain(void)
 {
@@ -357,7 +364,22 @@ AVX2 static size_t avx2_near_points(const struct packed_leaf *pack, const uint32
     }
 }
 
-static const struct filter avx2 = {avx2_near_boxes, avx2_pack, avx2_near_leaves, avx2_near_points};
+AVX2 static void avx2_steps(uint16_t *out, const uint32_t *found, size_t n, uint32_t base)
+{
+    __m256i b = _mm256_set1_epi32((int)base);
+
+    for (size_t k = 0; k < n; k += 16) {
+        const __m256i *from = (const __m256i *)(const void *)(found + k);
+        __m256i low = _mm256_sub_epi32(_mm256_loadu_si256(from), b);
+        __m256i high = _mm256_sub_epi32(_mm256_loadu_si256(from + 1), b);
+        __m256i both = _mm256_packus_epi32(low, high); /* a half from each, in turns */
+
+        _mm256_storeu_si256((__m256i *)(void *)(out + k), _mm256_permute4x64_epi64(both, 0xd8));
+    }
+}
+
+static const struct filter avx2 = {avx2_near_boxes, avx2_pack, avx2_near_leaves, avx2_near_points,
+                                   avx2_steps};
 
 const struct filter *filter_best(void)
 {

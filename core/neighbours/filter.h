@@ -53,7 +53,11 @@ struct filter {
     size_t (*near_points)(const struct packed_leaf *pack, const uint32_t *leaf,
                           const uint32_t *chosen, size_t n, const struct lanes *t, int dim,
                           uint32_t *out);
+    /* Writes found[k] - base; room for STEPS_MORE beyond n, read and written. */
+    void (*steps)(uint16_t *out, const uint32_t *found, size_t n, uint32_t base);
 };
+
+#define STEPS_MORE 16
 
 /* The filter for this processor; the plain one for the tests. */
 const struct filter *filter_best(void);

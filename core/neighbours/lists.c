@@ -13,7 +13,7 @@
 
 /* Where a chunk's lists stand in its worker's memory. */
 struct chunk {
-    size_t worker, begin, n;
+    size_t worker, span, n_span, step, n_step;
 };
 
 struct team {
@@ -39,15 +39,67 @@ static void team_run(struct team *t, const struct job *j, size_t n_group)
         size_t me = (size_t)worker_number(), first = k * CHUNK, last = first + CHUNK;
         struct worker *w = &t->worker[me];
 
-        t->chunk[k].worker = me;
-        t->chunk[k].begin = w->n_out;
+        t->chunk[k] = (struct chunk){.worker = me, .span = w->n_span, .step = w->n_step};
         worker_make(j, w, first, last < n_group ? last : n_group);
-        t->chunk[k].n = w->n_out - t->chunk[k].begin;
+        t->chunk[k].n_span = w->n_span - t->chunk[k].span;
+        t->chunk[k].n_step = w->n_step - t->chunk[k].step;
     }
 }
 
-/* Joins the chunks in the order of their groups. */
-static int team_collect(struct group_list *list, struct team *t, struct error *e)
+/* A single worker works in the list's own memory. */
+static void list_lend(struct group_list *list, struct worker *w)
+{
+    w->span = list->span;
+    w->span_capacity = list->span_capacity;
+    w->step = list->step;
+    w->step_capacity = list->step_capacity;
+    list->span = NULL;
+    list->step = NULL;
+    list->span_capacity = list->step_capacity = 0;
+}
+
+static void list_take(struct group_list *list, struct worker *w)
+{
+    list->span = w->span;
+    list->span_capacity = w->span_capacity;
+    list->step = w->step;
+    list->step_capacity = w->step_capacity;
+    w->span = NULL;
+    w->step = NULL;
+}
+
+/* An array of n elements and little more; what was in it is kept if `keep`. */
+static int resize(void *array, size_t *capacity, size_t n, size_t size, bool keep, struct error *e)
+{
+    void *old, *fresh;
+
+    memcpy(&old, array, sizeof old);
+    if (n <= *capacity && *capacity - n <= n / 32 + 64) {
+        return 0;
+    }
+    n += n / 128 + 16;
+    if (!keep) {
+        free(old);
+        old = NULL;
+    }
+    fresh = realloc(old, n * size);
+    *capacity = fresh ? n : keep ? *capacity : 0;
+    old = fresh ? fresh : old;
+    memcpy(array, &old, sizeof old);
+    return fresh ? 0 : error_memory(e, "neighbour lists", n * size);
+}
+
+static int list_resize(struct group_list *list, bool keep, struct error *e)
+{
+    return resize(&list->span, &list->span_capacity, list->n_span, sizeof *list->span, keep, e) ||
+                   resize(&list->step, &list->step_capacity, list->n_entry, sizeof *list->step,
+                          keep, e)
+               ? -1
+               : 0;
+}
+
+/* Where a chunk's spans and steps go: counts become begins. */
+static void team_place(struct group_list *list, const struct team *t)
 {
     uint64_t sum = 0;
 
@@ -57,31 +109,50 @@ static int team_collect(struct group_list *list, struct team *t, struct error *e
         list->begin[g] = sum;
         sum += count;
     }
-    list->begin[list->n_group] = sum;
-    if (t->n_worker == 1) {
-        list->source = t->worker[0].out; /* which was the list's to begin with */
-        list->capacity = t->worker[0].out_capacity;
-        t->worker[0].out = NULL;
-        return 0;
+    list->begin[list->n_group] = list->n_span = sum;
+    list->n_entry = 0;
+    for (size_t k = 0; k < t->n_worker; k++) {
+        list->n_entry += t->worker[k].n_step;
     }
-    if (sum > list->capacity) {
-        free(list->source);
-        list->capacity = sum + sum / 16;
-        list->source = malloc(list->capacity * sizeof *list->source);
-        if (!list->source) {
-            list->capacity = 0;
-            return error_memory(e, "neighbour lists", sum * sizeof *list->source);
-        }
+}
+
+/* Joins the chunks in the order of their groups. */
+static int team_collect(struct group_list *list, struct team *t, struct error *e)
+{
+    size_t *first = NULL, sum = 0;
+
+    team_place(list, t);
+    if (t->n_worker == 1) {
+        list_take(list, &t->worker[0]);
+        return list_resize(list, true, e);
+    }
+    first = malloc(t->n_chunk * sizeof *first);
+    if (!first) {
+        return error_memory(e, "neighbour lists", t->n_chunk * sizeof *first);
+    }
+    for (size_t k = 0; k < t->n_chunk; k++) {
+        first[k] = sum;
+        sum += t->chunk[k].n_step;
+    }
+    if (list_resize(list, false, e) != 0) {
+        free(first);
+        return -1;
     }
 #pragma omp parallel for schedule(static) num_threads((int)t->n_worker)
     for (size_t k = 0; k < t->n_chunk; k++) {
         const struct chunk *c = &t->chunk[k];
+        const struct worker *w = &t->worker[c->worker];
+        sph_span *span = list->span + list->begin[k * CHUNK];
 
-        if (c->n > 0) {
-            memcpy(list->source + list->begin[k * CHUNK], t->worker[c->worker].out + c->begin,
-                   c->n * sizeof *list->source);
+        for (size_t s = 0; s < c->n_span; s++) {
+            span[s] = w->span[c->span + s];
+            span[s].first += first[k] - c->step;
+        }
+        if (c->n_step > 0) {
+            memcpy(list->step + first[k], w->step + c->step, c->n_step * sizeof *w->step);
         }
     }
+    free(first);
     return 0;
 }
 
@@ -94,7 +165,7 @@ static int team_check(struct group_list *list, const struct team *t, struct erro
     list->candidates = 0;
     for (size_t k = 0; k < t->n_worker; k++) {
         list->candidates += t->worker[k].candidates;
-        bytes += t->worker[k].n_out * sizeof *t->worker[k].out;
+        bytes += t->worker[k].n_step * sizeof *t->worker[k].step;
         no_memory = no_memory || t->worker[k].no_memory;
     }
     return no_memory ? error_memory(e, "neighbour lists, and more", bytes) : 0;
@@ -114,10 +185,7 @@ static int list_fill(struct group_list *list, const struct job *j, int threads, 
         goto done;
     }
     if (t.n_worker == 1) {
-        t.worker[0].out = list->source;
-        t.worker[0].out_capacity = list->capacity;
-        list->source = NULL;
-        list->capacity = 0;
+        list_lend(list, &t.worker[0]);
     }
     team_run(&t, j, list->n_group);
     status = team_check(list, &t, e);
@@ -135,9 +203,10 @@ done:
 
 static int list_reserve(struct group_list *list, size_t n_group, struct error *e)
 {
-    list->n_group = 0;
+    list->n_group = list->n_span = 0;
+    list->n_entry = 0;
     if (n_group + 1 > list->group_capacity) {
-        size_t capacity = n_group + n_group / 16 + 1;
+        size_t capacity = n_group + n_group / 128 + 1;
         uint64_t *begin = realloc(list->begin, capacity * sizeof *begin);
 
         if (!begin) {
@@ -209,7 +278,8 @@ int filter_make(struct group_list *list, const struct cloud *dst, const struct c
     status = list_fill(list, &j, threads, e);
     boxes_free(&j.tree);
     if (status != 0) {
-        list->n_group = 0; /* nobody shall read half a list */
+        list->n_group = list->n_span = 0; /* nobody shall read half a list */
+        list->n_entry = 0;
     }
     return status;
 }
@@ -223,11 +293,13 @@ int group_list_make(struct group_list *list, const struct cloud *dst, const stru
 void group_list_fini(struct group_list *list)
 {
     free(list->begin);
-    free(list->source);
+    free(list->span);
+    free(list->step);
     memset(list, 0, sizeof *list);
 }
 
 size_t group_list_bytes(const struct group_list *list)
 {
-    return list->group_capacity * sizeof *list->begin + list->capacity * sizeof *list->source;
+    return list->group_capacity * sizeof *list->begin + list->span_capacity * sizeof *list->span +
+           list->step_capacity * sizeof *list->step;
 }

@@ -15,6 +15,7 @@
 #define NEIGHBOURS_NEIGHBOURS_H
 
 #include "base/error.h"
+#include <sph/batch.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -28,10 +29,16 @@ struct cloud {
     double scale;
 };
 
+/* The sources of group g, ascending: span[s].base + step[span[s].first + k], k < span[s].count, for
+ * begin[g] <= s < begin[g + 1]. A new span begins only where a source is more than UINT16_MAX
+ * beyond the base. Spans and steps of a group follow those of the one before. */
 struct group_list {
-    uint64_t *begin; /* [n_group + 1] */
-    uint32_t *source;
-    size_t n_group, capacity, group_capacity;
+    uint64_t *begin; /* [n_group + 1]: into span */
+    sph_span *span;  /* [n_span] */
+    uint16_t *step;  /* [n_entry] */
+    size_t n_group, n_span;
+    uint64_t n_entry;
+    size_t group_capacity, span_capacity, step_capacity;
     bool symmetric;
     double true_share; /* set by who counts (group_list_count): true pairs per entry of the list */
     uint64_t candidates; /* distances computed while making it */
@@ -47,6 +54,42 @@ int group_list_make(struct group_list *list, const struct cloud *dst, const stru
 /* Directed pairs within reach (no skin, self pairs included) among those that the list offers. */
 uint64_t group_list_count(const struct group_list *list, const struct cloud *dst,
                           const struct cloud *src);
+/* Entries of groups [first, end). */
+static inline uint64_t group_list_entries(const struct group_list *list, size_t first, size_t end)
+{
+    uint64_t a = list->begin[first], b = list->begin[end];
+
+    return (b < list->n_span ? list->span[b].first : list->n_entry) -
+           (a < list->n_span ? list->span[a].first : list->n_entry);
+}
+
+/* Goes through a group's sources:
+ * for (struct source_walk w = source_walk_begin(list, g); source_walk_next(list, &w);) ... w.source */
+struct source_walk {
+    uint64_t span, end;
+    uint32_t k, source;
+};
+
+static inline struct source_walk source_walk_begin(const struct group_list *list, size_t group)
+{
+    struct source_walk w = {.span = list->begin[group], .end = list->begin[group + 1]};
+
+    return w;
+}
+
+static inline bool source_walk_next(const struct group_list *list, struct source_walk *w)
+{
+    if (w->span < w->end && w->k == list->span[w->span].count) {
+        w->span++;
+        w->k = 0;
+    }
+    if (w->span == w->end) {
+        return false;
+    }
+    w->source = list->span[w->span].base + list->step[list->span[w->span].first + w->k++];
+    return true;
+}
+
 void group_list_fini(struct group_list *list);
 size_t group_list_bytes(const struct group_list *list);
 

@@ -17,7 +17,7 @@
 #define UNIFORM 1.004f    /* reaches of a group that differ less are taken as one */
 
 /* Destinations [first, last) that are looked after together. */
-struct span {
+struct stretch {
     size_t first, last;
     struct query q;
     double least; /* reach */
@@ -25,22 +25,23 @@ struct span {
 
 /* -- Memory of a worker ------------------------------------------------------------------------ */
 
-static bool out_reserve(struct worker *w, size_t more)
+/* Room for n elements in an array; what is in it is kept. */
+static bool reserve(struct worker *w, void *array, size_t *capacity, size_t n, size_t size)
 {
-    size_t capacity = w->n_out + more;
-    uint32_t *out;
+    void *old, *more;
 
-    if (capacity <= w->out_capacity) {
+    if (n <= *capacity) {
         return true;
     }
-    capacity += capacity / 2;
-    out = realloc(w->out, capacity * sizeof *out);
-    if (!out) {
+    memcpy(&old, array, sizeof old);
+    n += n / 4 + 64;
+    more = realloc(old, n * size);
+    if (!more) {
         w->no_memory = true;
         return false;
     }
-    w->out = out;
-    w->out_capacity = capacity;
+    memcpy(array, &more, sizeof more);
+    *capacity = n;
     return true;
 }
 
@@ -71,7 +72,9 @@ static bool leaf_reserve(struct worker *w, size_t n)
 
 void worker_fini(struct worker *w)
 {
-    free(w->out);
+    free(w->span);
+    free(w->step);
+    free(w->found);
     free(w->leaf);
     free(w->chosen);
     free(w->pack);
@@ -118,9 +121,9 @@ static size_t sort_unique(struct worker *w, size_t n_source, uint32_t *list, siz
     return left;
 }
 
-/* -- Spans ------------------------------------------------------------------------------------- */
+/* -- Stretches ------------------------------------------------------------------------------------- */
 
-static void span_init(struct span *s, const struct job *j, size_t first, size_t last)
+static void stretch_init(struct stretch *s, const struct job *j, size_t first, size_t last)
 {
     const struct cloud *c = j->dst;
 
@@ -147,7 +150,7 @@ static void span_init(struct span *s, const struct job *j, size_t first, size_t 
 }
 
 /* Half the diagonal of the box. */
-static double span_radius(const struct span *s)
+static double stretch_radius(const struct stretch *s)
 {
     double sum = 0;
 
@@ -160,7 +163,7 @@ static double span_radius(const struct span *s)
 }
 
 /* Makes `both` of two spans that stand side by side. */
-static void span_join(struct span *both, const struct span *s, const struct span *t)
+static void stretch_join(struct stretch *both, const struct stretch *s, const struct stretch *t)
 {
     *both = *s;
     both->last = t->last;
@@ -199,7 +202,7 @@ static void walk(const struct job *j, struct worker *w, const struct query *q, i
 
 /* -- Single precision -------------------------------------------------------------------------- */
 
-static void frame_init(struct frame *f, const struct job *j, const struct span *s)
+static void frame_init(struct frame *f, const struct job *j, const struct stretch *s)
 {
     double unit = s->q.reach;
 
@@ -228,7 +231,7 @@ static void pack_box(const struct job *j, const struct frame *f, uint32_t leaf,
 }
 
 /* Finds and packs the leaves near a span. */
-static void look(const struct job *j, struct worker *w, const struct span *s, struct frame *f)
+static void look(const struct job *j, struct worker *w, const struct stretch *s, struct frame *f)
 {
     w->n_leaf = 0;
     walk(j, w, &s->q, j->tree.n_level - 1, 0);
@@ -296,42 +299,72 @@ static void take(const struct job *j, struct worker *w, const struct frame *f, s
     }
     lanes_init(&t, j, f, first, last);
     n = j->filter->near_leaves(w->box, w->n_leaf, &t, j->tree.dim, w->chosen);
-    if (!out_reserve(w, BOXES_FAN * (n + 1))) {
+    if (!reserve(w, &w->found, &w->found_capacity, w->n_found + BOXES_FAN * n + STEPS_MORE,
+                 sizeof *w->found)) {
         return;
     }
-    found =
-        j->filter->near_points(w->pack, w->leaf, w->chosen, n, &t, j->tree.dim, w->out + w->n_out);
-    for (size_t k = w->n_out; j->tree.order && k < w->n_out + found; k++) {
-        w->out[k] = j->tree.order[w->out[k]];
+    found = j->filter->near_points(w->pack, w->leaf, w->chosen, n, &t, j->tree.dim,
+                                   w->found + w->n_found);
+    for (size_t k = w->n_found; j->tree.order && k < w->n_found + found; k++) {
+        w->found[k] = j->tree.order[w->found[k]];
     }
-    w->n_out += found;
+    w->n_found += found;
     w->candidates += n * BOXES_FAN * LANES;
+}
+
+/* Appends the sources found, which ascend, to the lists: those of a group. */
+static void put(const struct job *j, struct worker *w, size_t group)
+{
+    const uint32_t *found = w->found;
+    size_t n = w->n_found, spans = 0;
+
+    w->n_found = 0;
+    if (w->no_memory ||
+        !reserve(w, &w->step, &w->step_capacity, w->n_step + n + STEPS_MORE, sizeof *w->step)) {
+        return;
+    }
+    for (size_t k = 0, end; k < n; k = end, spans++) {
+        uint32_t base = found[k];
+
+        end = n;
+        if (found[n - 1] - base > UINT16_MAX) {
+            for (end = k + 1; found[end] - base <= UINT16_MAX; end++) {
+            }
+        }
+        if (!reserve(w, &w->span, &w->span_capacity, w->n_span + 1, sizeof *w->span)) {
+            return;
+        }
+        w->span[w->n_span++] = (sph_span){w->n_step, base, (uint32_t)(end - k)};
+        j->filter->steps(w->step + w->n_step, found + k, end - k, base);
+        w->n_step += end - k;
+    }
+    j->count[group] = spans;
 }
 
 /* -- Groups ------------------------------------------------------------------------------------ */
 
-static void group_span(struct span *s, const struct job *j, size_t group)
+static void group_stretch(struct stretch *s, const struct job *j, size_t group)
 {
     size_t first = group * LANES, n = j->dst->n;
 
-    span_init(s, j, first, first + LANES < n ? first + LANES : n);
+    stretch_init(s, j, first, first + LANES < n ? first + LANES : n);
 }
 
 /* A group whose lanes are far apart, piece by piece. */
 static void group_in_pieces(const struct job *j, struct worker *w, size_t group)
 {
-    size_t start = w->n_out, first = group * LANES;
+    size_t first = group * LANES;
     size_t last = first + LANES < j->dst->n ? first + LANES : j->dst->n;
 
     while (first < last) {
-        struct span piece, more, both;
+        struct stretch piece, more, both;
         struct frame f;
 
-        span_init(&piece, j, first, first + 1);
+        stretch_init(&piece, j, first, first + 1);
         for (size_t i = first + 1; i < last; i++) {
-            span_init(&more, j, i, i + 1);
-            span_join(&both, &piece, &more);
-            if (span_radius(&both) > both.least) {
+            stretch_init(&more, j, i, i + 1);
+            stretch_join(&both, &piece, &more);
+            if (stretch_radius(&both) > both.least) {
                 break;
             }
             piece = both;
@@ -340,43 +373,43 @@ static void group_in_pieces(const struct job *j, struct worker *w, size_t group)
         take(j, w, &f, piece.first, piece.last);
         first = piece.last;
     }
-    w->n_out = start + sort_unique(w, j->tree.n, w->out + start, w->n_out - start);
-    j->count[group] = w->n_out - start;
+    w->n_found = sort_unique(w, j->tree.n, w->found, w->n_found);
+    put(j, w, group);
 }
 
 /* Groups [first, last), which stand close together. */
-static void bundle(const struct job *j, struct worker *w, const struct span *s, size_t first,
+static void bundle(const struct job *j, struct worker *w, const struct stretch *s, size_t first,
                    size_t last)
 {
     struct frame f;
 
     look(j, w, s, &f);
     for (size_t group = first; group < last; group++) {
-        size_t start = w->n_out, begin = group * LANES, end = begin + LANES;
+        size_t begin = group * LANES, end = begin + LANES;
 
         take(j, w, &f, begin, end < j->dst->n ? end : j->dst->n);
         if (j->tree.order) {
-            w->n_out = start + sort_unique(w, j->tree.n, w->out + start, w->n_out - start);
+            w->n_found = sort_unique(w, j->tree.n, w->found, w->n_found);
         }
-        j->count[group] = w->n_out - start;
+        put(j, w, group);
     }
 }
 
 void worker_make(const struct job *j, struct worker *w, size_t first, size_t last)
 {
-    struct span s, next, both;
+    struct stretch s, next, both;
 
-    group_span(&next, j, first);
+    group_stretch(&next, j, first);
     for (size_t group = first; group < last && !w->no_memory;) {
         size_t end = group + 1;
-        bool whole = span_radius(&next) <= SPREAD_MOST * next.least;
+        bool whole = stretch_radius(&next) <= SPREAD_MOST * next.least;
 
         s = next;
         for (; end < last; end++) {
-            group_span(&next, j, end);
-            span_join(&both, &s, &next);
+            group_stretch(&next, j, end);
+            stretch_join(&both, &s, &next);
             if (!whole || end - group == BUNDLE_MOST ||
-                span_radius(&both) > BUNDLE_SPREAD * both.least) {
+                stretch_radius(&both) > BUNDLE_SPREAD * both.least) {
                 break;
             }
             s = both;

@@ -13,13 +13,16 @@ struct job {
     const struct filter *filter;
     struct boxes tree;
     double scale;    /* of the destinations' reach, skin and slack included */
-    uint64_t *count; /* [n_group]: sources of each group */
+    uint64_t *count; /* [n_group]: spans of each group */
 };
 
 /* What one thread owns. */
 struct worker {
-    uint32_t *out; /* lists of its chunks, one after the other */
-    size_t n_out, out_capacity;
+    sph_span *span; /* lists of its chunks, one after the other */
+    uint16_t *step;
+    size_t n_span, span_capacity, n_step, step_capacity;
+    uint32_t *found; /* sources of the group at hand */
+    size_t n_found, found_capacity;
     uint32_t *leaf, *chosen; /* of the bundle at hand; of the group */
     struct packed_leaf *pack;
     struct packed_box8 *box;

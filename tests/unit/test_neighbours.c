@@ -38,14 +38,13 @@ static double pair_reach(const struct cloud *d, size_t i, const struct cloud *s,
 static void check_group(const struct group_list *l, size_t g, const struct cloud *d,
                         const struct cloud *s, bool symmetric, double skin)
 {
-    size_t q = l->begin[g], last = g * GROUP + GROUP < d->n ? g * GROUP + GROUP : d->n;
+    struct source_walk w = source_walk_begin(l, g);
+    size_t last = g * GROUP + GROUP < d->n ? g * GROUP + GROUP : d->n;
+    bool more = source_walk_next(l, &w);
 
-    for (size_t k = q; k + 1 < l->begin[g + 1]; k++) {
-        assert_true(l->source[k] < l->source[k + 1]);
-    }
     for (size_t j = 0; j < s->n; j++) {
         bool needed = false, allowed = false;
-        bool listed = q < l->begin[g + 1] && l->source[q] == j;
+        bool listed = more && w.source == j;
 
         for (size_t i = g * GROUP; i < last; i++) {
             double reach = pair_reach(d, i, s, j, symmetric) * (1 + skin);
@@ -58,9 +57,41 @@ static void check_group(const struct group_list *l, size_t g, const struct cloud
         if (needed != listed && (needed || !allowed)) {
             fail_msg("group %zu, source %zu: %s", g, j, listed ? "listed" : "missing");
         }
-        q += listed;
+        more = listed ? source_walk_next(l, &w) : more;
     }
-    assert_int_equal(q, l->begin[g + 1]); /* no index beyond the sources */
+    assert_false(more); /* all ascend, and none is beyond the sources */
+}
+
+/* Steps follow each other, and no span could have been longer. */
+static void check_spans(const struct group_list *l)
+{
+    uint64_t entries = 0;
+
+    assert_int_equal(l->begin[l->n_group], l->n_span);
+    for (size_t g = 0; g < l->n_group; g++) {
+        uint64_t before = entries;
+
+        for (uint64_t s = l->begin[g]; s < l->begin[g + 1]; s++) {
+            assert_int_equal(l->span[s].first, entries);
+            assert_true(l->span[s].count > 0);
+            assert_int_equal(l->step[entries], 0);
+            assert_true(s == l->begin[g] || l->span[s].base - l->span[s - 1].base > UINT16_MAX);
+            entries += l->span[s].count;
+        }
+        assert_int_equal(group_list_entries(l, g, g + 1), entries - before);
+    }
+    assert_int_equal(l->n_entry, entries);
+    assert_int_equal(group_list_entries(l, 0, l->n_group), entries);
+}
+
+static void same_lists(const struct group_list *a, const struct group_list *b)
+{
+    assert_int_equal(a->n_group, b->n_group);
+    assert_int_equal(a->n_span, b->n_span);
+    assert_int_equal(a->n_entry, b->n_entry);
+    assert_memory_equal(a->begin, b->begin, (a->n_group + 1) * sizeof *a->begin);
+    assert_memory_equal(a->span, b->span, a->n_span * sizeof *a->span);
+    assert_memory_equal(a->step, b->step, a->n_entry * sizeof *a->step);
 }
 
 static void check_with(const struct cloud *d, const struct cloud *s, const struct filter *filter)
@@ -79,7 +110,9 @@ static void check_with(const struct cloud *d, const struct cloud *s, const struc
         for (size_t g = 0; g < l.n_group; g++) {
             check_group(&l, g, d, s, symmetric, skins[k % 2]);
         }
-        assert_true(group_list_bytes(&l) >= 8 * (l.n_group + 1) + 4 * l.begin[l.n_group]);
+        check_spans(&l);
+        assert_true(group_list_bytes(&l) >=
+                    8 * (l.n_group + 1) + sizeof *l.span * l.n_span + 2 * l.n_entry);
     }
     group_list_fini(&l);
 }
@@ -196,14 +229,37 @@ static void gather_needs_no_source_h(void **state)
     bare.h = NULL;
     assert_int_equal(group_list_make(&with, &d.c, &s.c, false, 0.1, 1, &e), 0);
     assert_int_equal(group_list_make(&without, &d.c, &bare, false, 0.1, 1, &e), 0);
-    assert_int_equal(with.begin[with.n_group], without.begin[without.n_group]);
-    assert_true(with.begin[with.n_group] > 0);
-    assert_memory_equal(with.source, without.source, 4 * with.begin[with.n_group]);
+    assert_true(with.n_entry > 0);
+    same_lists(&with, &without);
     assert_int_equal(group_list_make(&without, &d.c, &bare, true, 0.1, 1, &e), -1);
     group_list_fini(&with);
     group_list_fini(&without);
     cloud_free(&d);
     cloud_free(&s);
+}
+
+/* Sources that stand further apart than a step goes: several spans a group. */
+static void many_sources(void **state)
+{
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++) {
+        struct owned d = cloud_even(dim, 61, 31), s = cloud_even(dim, 200000, 32);
+        struct group_list l = {0};
+        struct error e;
+
+        for (size_t i = 0; i < d.c.n; i++) {
+            d.h[i] = even_h(dim, s.c.n, 20 + (double)i);
+        }
+        assert_int_equal(group_list_make(&l, &d.c, &s.c, true, 0.1, 1, &e), 0);
+        check_spans(&l);
+        assert_true(l.n_span > 2 * l.n_group);
+        for (size_t g = 0; g < l.n_group; g++) {
+            check_group(&l, g, &d.c, &s.c, true, 0.1);
+        }
+        group_list_fini(&l);
+        cloud_free(&d);
+        cloud_free(&s);
+    }
 }
 
 static void empty_clouds(void **state)
@@ -341,8 +397,9 @@ static void periodic_clouds(void **state)
         check(&d, &s);
         assert_int_equal(group_list_make(&l, &d, &s, true, 0.1, 1, &e), 0);
         for (size_t i = 0; i < d.n; i++) {
-            for (size_t q = l.begin[i / GROUP]; q < l.begin[i / GROUP + 1]; q++) {
-                listed += square(&d, i, &s, l.source[q]) < reach * reach;
+            for (struct source_walk w = source_walk_begin(&l, i / GROUP);
+                 source_walk_next(&l, &w);) {
+                listed += square(&d, i, &s, w.source) < reach * reach;
             }
             for (size_t j = 0; j < d.n; j++) {
                 double sum = 0;
@@ -365,14 +422,6 @@ static void periodic_clouds(void **state)
     }
 }
 
-static void same_lists(const struct group_list *a, const struct group_list *b)
-{
-    assert_int_equal(a->n_group, b->n_group);
-    assert_memory_equal(a->begin, b->begin, (a->n_group + 1) * sizeof *a->begin);
-    assert_memory_equal(a->source, b->source, a->begin[a->n_group] * sizeof *a->source);
-    assert_int_equal(a->candidates, b->candidates);
-}
-
 /* Many chunks; sorted, and in the tree's own order; a list that is used again. */
 static void threads_make_no_difference(void **state)
 {
@@ -390,6 +439,7 @@ static void threads_make_no_difference(void **state)
         for (int threads = 2; threads <= 4; threads++) {
             assert_int_equal(group_list_make(&more, &o.c, &o.c, true, 0.1, threads, &e), 0);
             same_lists(&one, &more);
+            assert_int_equal(one.candidates, more.candidates);
         }
         assert_int_equal(group_list_make(&more, &o.c, &o.c, true, 0.1, 1, &e), 0);
         same_lists(&one, &more);
@@ -414,7 +464,7 @@ static void work_is_bounded(void **state)
 
         cloud_sort(&o, 2 * even_h(3, 40000, 20));
         assert_int_equal(group_list_make(&l, &o.c, &o.c, false, 0, 1, &e), 0);
-        pairs = GROUP * l.begin[l.n_group];
+        pairs = GROUP * l.n_entry;
         assert_true(l.candidates < 10 * pairs);
         /* Unsorted, the groups are bad, but the search is still local. */
         uint64_t seed = 5;
@@ -430,7 +480,7 @@ static void work_is_bounded(void **state)
             }
         }
         assert_int_equal(group_list_make(&l, &o.c, &o.c, false, 0, 1, &e), 0);
-        pairs = GROUP * l.begin[l.n_group];
+        pairs = GROUP * l.n_entry;
         assert_true(l.candidates < 12 * pairs);
         group_list_fini(&l);
         cloud_free(&o);
@@ -481,21 +531,14 @@ static void refuses(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(few_points),
-        cmocka_unit_test(even_clouds),
-        cmocka_unit_test(clustered_clouds),
-        cmocka_unit_test(wild_reaches),
-        cmocka_unit_test(two_clouds),
-        cmocka_unit_test(gather_needs_no_source_h),
-        cmocka_unit_test(empty_clouds),
-        cmocka_unit_test(coincident_points),
-        cmocka_unit_test(outliers),
-        cmocka_unit_test(any_unit_of_length),
-        cmocka_unit_test(all_pairs),
-        cmocka_unit_test(periodic_clouds),
-        cmocka_unit_test(threads_make_no_difference),
-        cmocka_unit_test(work_is_bounded),
-        cmocka_unit_test(refuses),
+        cmocka_unit_test(few_points),         cmocka_unit_test(even_clouds),
+        cmocka_unit_test(clustered_clouds),   cmocka_unit_test(wild_reaches),
+        cmocka_unit_test(two_clouds),         cmocka_unit_test(gather_needs_no_source_h),
+        cmocka_unit_test(many_sources),       cmocka_unit_test(empty_clouds),
+        cmocka_unit_test(coincident_points),  cmocka_unit_test(outliers),
+        cmocka_unit_test(any_unit_of_length), cmocka_unit_test(all_pairs),
+        cmocka_unit_test(periodic_clouds),    cmocka_unit_test(threads_make_no_difference),
+        cmocka_unit_test(work_is_bounded),    cmocka_unit_test(refuses),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -66,6 +66,7 @@ static void list_take(struct group_list *list, struct worker *w)
     list->step_capacity = w->step_capacity;
     w->span = NULL;
     w->step = NULL;
+    w->span_capacity = w->step_capacity = 0;
 }
 
 /* An array of n elements and little more; what was in it is kept if `keep`. */
@@ -162,9 +163,10 @@ static int team_check(struct group_list *list, const struct team *t, struct erro
     size_t bytes = 0;
     bool no_memory = false;
 
-    list->candidates = 0;
+    list->candidates = list->visited = 0;
     for (size_t k = 0; k < t->n_worker; k++) {
         list->candidates += t->worker[k].candidates;
+        list->visited += t->worker[k].visited;
         bytes += t->worker[k].n_step * sizeof *t->worker[k].step;
         no_memory = no_memory || t->worker[k].no_memory;
     }
@@ -191,6 +193,9 @@ static int list_fill(struct group_list *list, const struct job *j, int threads, 
     status = team_check(list, &t, e);
     if (status == 0) {
         status = team_collect(list, &t, e);
+    }
+    for (size_t k = 0; k < t.n_worker; k++) {
+        list->search_bytes += worker_bytes(&t.worker[k]);
     }
 done:
     for (size_t k = 0; t.worker && k < t.n_worker; k++) {
@@ -220,16 +225,6 @@ static int list_reserve(struct group_list *list, size_t n_group, struct error *e
     return 0;
 }
 
-static double mean_reach(const struct cloud *c, double scale)
-{
-    double sum = 0;
-
-    for (size_t i = 0; i < c->n; i++) {
-        sum += c->h[i];
-    }
-    return c->n > 0 ? scale * sum / (double)c->n : 0;
-}
-
 static int check(const struct cloud *dst, const struct cloud *src, bool symmetric, double skin,
                  struct error *e)
 {
@@ -244,39 +239,48 @@ static int check(const struct cloud *dst, const struct cloud *src, bool symmetri
     if ((dst->n > 0 && !dst->h) || (symmetric && src->n > 0 && !src->h)) {
         return error_set(e, EXIT_RUN, "neighbour lists of particles without smoothing length");
     }
-    if (boxes_check(dst, "destination", e) != 0) {
+    if (cloud_check(dst, "destination", e) != 0) {
         return -1;
     }
     return dst->n == src->n && dst->h == src->h && dst->x[0] == src->x[0]
                ? 0
-               : boxes_check(src, "source", e);
+               : cloud_check(src, "source", e);
 }
 
 int filter_make(struct group_list *list, const struct cloud *dst, const struct cloud *src,
-                bool symmetric, double skin, int threads, const struct filter *filter,
-                struct error *e)
+                bool symmetric, double skin, const struct neighbour_manager *manager, int threads,
+                const struct filter *filter, struct error *e)
 {
     double factor = (1 + skin) * (1 + SLACK);
-    struct job j = {.dst = dst, .filter = filter, .scale = dst->scale * factor};
-    int status;
+    struct sources sources;
+    struct job j = {.dst = dst, .filter = filter, .scale = dst->scale * factor, .src = &sources};
+    size_t bytes = 0;
+    void *search;
+    int status = -1;
 
+    threads = threads > 0 ? threads : 1;
     if (check(dst, src, symmetric, skin, e) != 0 ||
         list_reserve(list, (dst->n + LANES - 1) / LANES, e) != 0) {
         return -1;
     }
     list->symmetric = symmetric;
-    list->candidates = 0;
+    list->candidates = list->visited = list->search_bytes = 0;
     if (dst->n == 0 || src->n == 0) {
         return 0;
     }
-    threads = threads > 0 ? threads : 1;
-    if (boxes_make(&j.tree, src, symmetric ? src->scale * factor : 0, mean_reach(dst, j.scale),
-                   threads, e) != 0) {
+    if (sources_make(&sources, dst, src, symmetric, factor, threads, e) != 0) {
         return -1;
     }
+    list->manager = manager ? manager : neighbour_manager_choose(dst, src, symmetric);
+    j.manager = list->manager->calls;
+    j.search = search = j.manager->make(&sources, filter, threads, &bytes, e);
     j.count = list->begin;
-    status = list_fill(list, &j, threads, e);
-    boxes_free(&j.tree);
+    list->search_bytes = sources.bytes + bytes;
+    if (search) {
+        status = list_fill(list, &j, threads, e);
+        j.manager->free(search);
+    }
+    sources_free(&sources);
     if (status != 0) {
         list->n_group = list->n_span = 0; /* nobody shall read half a list */
         list->n_entry = 0;
@@ -285,9 +289,10 @@ int filter_make(struct group_list *list, const struct cloud *dst, const struct c
 }
 
 int group_list_make(struct group_list *list, const struct cloud *dst, const struct cloud *src,
-                    bool symmetric, double skin, int threads, struct error *e)
+                    bool symmetric, double skin, const struct neighbour_manager *manager,
+                    int threads, struct error *e)
 {
-    return filter_make(list, dst, src, symmetric, skin, threads, filter_best(), e);
+    return filter_make(list, dst, src, symmetric, skin, manager, threads, filter_best(), e);
 }
 
 void group_list_fini(struct group_list *list)

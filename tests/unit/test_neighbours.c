@@ -94,25 +94,45 @@ static void same_lists(const struct group_list *a, const struct group_list *b)
     assert_memory_equal(a->step, b->step, a->n_entry * sizeof *a->step);
 }
 
+/* Every manager gives this list. */
+static void check_managers(const struct group_list *l, const struct cloud *d, const struct cloud *s,
+                           double skin, const struct filter *filter)
+{
+    const struct neighbour_manager *manager;
+
+    for (size_t k = 1; (manager = neighbour_manager_at(k)) != NULL; k++) {
+        struct group_list other = {0};
+        struct error e;
+
+        assert_int_equal(filter_make(&other, d, s, l->symmetric, skin, manager, 1, filter, &e), 0);
+        same_lists(l, &other);
+        assert_true(other.visited > 0 || other.n_entry == 0);
+        group_list_fini(&other);
+    }
+}
+
 static void check_with(const struct cloud *d, const struct cloud *s, const struct filter *filter)
 {
     static const double skins[2] = {0, 0.1};
+    const struct neighbour_manager *manager = neighbour_manager_at(0);
     struct group_list l = {0};
     struct error e;
 
     for (int k = 0; k < 4; k++) {
         bool symmetric = k / 2 > 0;
+        double skin = skins[k % 2];
 
-        assert_int_equal(filter_make(&l, d, s, symmetric, skins[k % 2], 1, filter, &e), 0);
+        assert_int_equal(filter_make(&l, d, s, symmetric, skin, manager, 1, filter, &e), 0);
         assert_int_equal(l.n_group, (d->n + GROUP - 1) / GROUP);
         assert_int_equal(l.symmetric, symmetric);
         assert_int_equal(l.begin[0], 0);
         for (size_t g = 0; g < l.n_group; g++) {
-            check_group(&l, g, d, s, symmetric, skins[k % 2]);
+            check_group(&l, g, d, s, symmetric, skin);
         }
         check_spans(&l);
         assert_true(group_list_bytes(&l) >=
                     8 * (l.n_group + 1) + sizeof *l.span * l.n_span + 2 * l.n_entry);
+        check_managers(&l, d, s, skin, filter);
     }
     group_list_fini(&l);
 }
@@ -227,11 +247,11 @@ static void gather_needs_no_source_h(void **state)
 
     (void)state;
     bare.h = NULL;
-    assert_int_equal(group_list_make(&with, &d.c, &s.c, false, 0.1, 1, &e), 0);
-    assert_int_equal(group_list_make(&without, &d.c, &bare, false, 0.1, 1, &e), 0);
+    assert_int_equal(group_list_make(&with, &d.c, &s.c, false, 0.1, NULL, 1, &e), 0);
+    assert_int_equal(group_list_make(&without, &d.c, &bare, false, 0.1, NULL, 1, &e), 0);
     assert_true(with.n_entry > 0);
     same_lists(&with, &without);
-    assert_int_equal(group_list_make(&without, &d.c, &bare, true, 0.1, 1, &e), -1);
+    assert_int_equal(group_list_make(&without, &d.c, &bare, true, 0.1, NULL, 1, &e), -1);
     group_list_fini(&with);
     group_list_fini(&without);
     cloud_free(&d);
@@ -250,7 +270,7 @@ static void many_sources(void **state)
         for (size_t i = 0; i < d.c.n; i++) {
             d.h[i] = even_h(dim, s.c.n, 20 + (double)i);
         }
-        assert_int_equal(group_list_make(&l, &d.c, &s.c, true, 0.1, 1, &e), 0);
+        assert_int_equal(group_list_make(&l, &d.c, &s.c, true, 0.1, NULL, 1, &e), 0);
         check_spans(&l);
         assert_true(l.n_span > 2 * l.n_group);
         for (size_t g = 0; g < l.n_group; g++) {
@@ -269,14 +289,14 @@ static void empty_clouds(void **state)
     struct error e;
 
     (void)state;
-    assert_int_equal(group_list_make(&l, &some.c, &some.c, true, 0, 2, &e), 0);
+    assert_int_equal(group_list_make(&l, &some.c, &some.c, true, 0, NULL, 2, &e), 0);
     assert_true(l.begin[3] > 0);
-    assert_int_equal(group_list_make(&l, &some.c, &none.c, true, 0, 2, &e), 0);
+    assert_int_equal(group_list_make(&l, &some.c, &none.c, true, 0, NULL, 2, &e), 0);
     assert_int_equal(l.n_group, 3);
     for (size_t g = 0; g <= 3; g++) {
         assert_int_equal(l.begin[g], 0);
     }
-    assert_int_equal(group_list_make(&l, &none.c, &some.c, true, 0, 2, &e), 0);
+    assert_int_equal(group_list_make(&l, &none.c, &some.c, true, 0, NULL, 2, &e), 0);
     assert_int_equal(l.n_group, 0);
     assert_int_equal(l.begin[0], 0);
     group_list_fini(&l);
@@ -320,7 +340,7 @@ static void outliers(void **state)
         check(&o.c, &o.c);
         cloud_sort(&o, 0.1);
         check(&o.c, &o.c);
-        assert_int_equal(group_list_make(&l, &o.c, &o.c, true, 0.1, 1, &e), 0);
+        assert_int_equal(group_list_make(&l, &o.c, &o.c, true, 0.1, NULL, 1, &e), 0);
         assert_true(group_list_bytes(&l) < 1000000);
         group_list_fini(&l);
         for (size_t i = 0; i < o.c.n; i++) {
@@ -395,7 +415,7 @@ static void periodic_clouds(void **state)
             s.x[a] = particles_real(&p, "x", (uint32_t)a);
         }
         check(&d, &s);
-        assert_int_equal(group_list_make(&l, &d, &s, true, 0.1, 1, &e), 0);
+        assert_int_equal(group_list_make(&l, &d, &s, true, 0.1, NULL, 1, &e), 0);
         for (size_t i = 0; i < d.n; i++) {
             for (struct source_walk w = source_walk_begin(&l, i / GROUP);
                  source_walk_next(&l, &w);) {
@@ -434,14 +454,14 @@ static void threads_make_no_difference(void **state)
         if (k / 2) {
             cloud_sort(&o, 4 * o.h[0]);
         }
-        assert_int_equal(group_list_make(&one, &o.c, &o.c, true, 0.1, 1, &e), 0);
+        assert_int_equal(group_list_make(&one, &o.c, &o.c, true, 0.1, NULL, 1, &e), 0);
         assert_true(one.begin[one.n_group] > 0);
         for (int threads = 2; threads <= 4; threads++) {
-            assert_int_equal(group_list_make(&more, &o.c, &o.c, true, 0.1, threads, &e), 0);
+            assert_int_equal(group_list_make(&more, &o.c, &o.c, true, 0.1, NULL, threads, &e), 0);
             same_lists(&one, &more);
             assert_int_equal(one.candidates, more.candidates);
         }
-        assert_int_equal(group_list_make(&more, &o.c, &o.c, true, 0.1, 1, &e), 0);
+        assert_int_equal(group_list_make(&more, &o.c, &o.c, true, 0.1, NULL, 1, &e), 0);
         same_lists(&one, &more);
         for (size_t g = 0; g < one.n_group; g += 401) {
             check_group(&one, g, &o.c, &o.c, true, 0.1);
@@ -463,7 +483,7 @@ static void work_is_bounded(void **state)
         uint64_t pairs;
 
         cloud_sort(&o, 2 * even_h(3, 40000, 20));
-        assert_int_equal(group_list_make(&l, &o.c, &o.c, false, 0, 1, &e), 0);
+        assert_int_equal(group_list_make(&l, &o.c, &o.c, false, 0, NULL, 1, &e), 0);
         pairs = GROUP * l.n_entry;
         assert_true(l.candidates < 10 * pairs);
         /* Unsorted, the groups are bad, but the search is still local. */
@@ -479,7 +499,7 @@ static void work_is_bounded(void **state)
                 x[j] = t;
             }
         }
-        assert_int_equal(group_list_make(&l, &o.c, &o.c, false, 0, 1, &e), 0);
+        assert_int_equal(group_list_make(&l, &o.c, &o.c, false, 0, NULL, 1, &e), 0);
         pairs = GROUP * l.n_entry;
         assert_true(l.candidates < 12 * pairs);
         group_list_fini(&l);
@@ -501,27 +521,27 @@ static void refuses(void **state)
         double old = o.x[1][37];
 
         o.x[1][37] = bad[k];
-        assert_int_equal(group_list_make(&l, &o.c, &o.c, true, 0.1, 1, &e), -1);
+        assert_int_equal(group_list_make(&l, &o.c, &o.c, true, 0.1, NULL, 1, &e), -1);
         assert_non_null(strstr(e.text, "particle 37"));
         assert_int_equal(e.exit_code, EXIT_RUN);
-        assert_int_equal(group_list_make(&l, &good.c, &o.c, true, 0.1, 1, &e), -1);
+        assert_int_equal(group_list_make(&l, &good.c, &o.c, true, 0.1, NULL, 1, &e), -1);
         assert_non_null(strstr(e.text, "source particle 37"));
-        assert_int_equal(group_list_make(&l, &o.c, &good.c, true, 0.1, 1, &e), -1);
+        assert_int_equal(group_list_make(&l, &o.c, &good.c, true, 0.1, NULL, 1, &e), -1);
         assert_non_null(strstr(e.text, "destination particle 37"));
         assert_int_equal(cell_order(&o.c, NULL, 0.1, order, &e), -1);
         assert_non_null(strstr(e.text, "particle 37"));
         o.x[1][37] = old;
         old = o.h[99];
         o.h[99] = k == 2 ? -1e-9 : bad[k];
-        assert_int_equal(group_list_make(&l, &o.c, &o.c, true, 0.1, 1, &e), -1);
+        assert_int_equal(group_list_make(&l, &o.c, &o.c, true, 0.1, NULL, 1, &e), -1);
         assert_non_null(strstr(e.text, "particle 99"));
         o.h[99] = old;
     }
-    assert_int_equal(group_list_make(&l, &o.c, &other.c, true, 0.1, 1, &e), -1);
-    assert_int_equal(group_list_make(&l, &o.c, &o.c, true, -0.1, 1, &e), -1);
-    assert_int_equal(group_list_make(&l, &o.c, &o.c, true, NAN, 1, &e), -1);
+    assert_int_equal(group_list_make(&l, &o.c, &other.c, true, 0.1, NULL, 1, &e), -1);
+    assert_int_equal(group_list_make(&l, &o.c, &o.c, true, -0.1, NULL, 1, &e), -1);
+    assert_int_equal(group_list_make(&l, &o.c, &o.c, true, NAN, NULL, 1, &e), -1);
     /* And still works. */
-    assert_int_equal(group_list_make(&l, &o.c, &o.c, true, 0.1, 1, &e), 0);
+    assert_int_equal(group_list_make(&l, &o.c, &o.c, true, 0.1, NULL, 1, &e), 0);
     group_list_fini(&l);
     cloud_free(&o);
     cloud_free(&other);

@@ -9,8 +9,8 @@ uint64_t group_list_count(const struct group_list *list, const struct cloud *dst
     uint64_t pairs = 0;
     for (size_t g = 0; g < list->n_group; g++) {
         size_t first = g * SPH_LANES, end = first + SPH_LANES < dst->n ? first + SPH_LANES : dst->n;
-        for (uint64_t k = list->begin[g]; k < list->begin[g + 1]; k++) {
-            const uint32_t j = list->source[k];
+        for (struct source_walk w = source_walk_begin(list, g); source_walk_next(list, &w);) {
+            const uint32_t j = w.source;
             for (size_t i = first; i < end; i++) {
                 double r2 = 0.0, reach = dst->scale * dst->h[i];
                 for (int c = 0; c < dst->dim; c++)

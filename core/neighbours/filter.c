@@ -1,20 +1,16 @@
-/* neighbours/filter.c -- the neighbour search's inner loops, in plain C and for AVX2. Pure. */
+/* neighbours/filter.c -- the neighbour search's inner loops, in plain C. Pure. */
 #include "neighbours/filter.h"
 
 #include <math.h>
-
-/* Points further away than so many units are taken to be there: squares must stay numbers. */
-#define FAR 1e18
-
-/* -- Plain C ----------------------------------------------------------------------------------- */
+#include <string.h>
 
 static unsigned plain_near_boxes(const struct box8 *b, const struct query *q, int dim)
 {
-    double gap[BOXES_FAN] = {0};
+    double gap[LEAF] = {0};
     unsigned mask = 0;
 
     for (int a = 0; a < dim; a++) {
-        for (int k = 0; k < BOXES_FAN; k++) {
+        for (int k = 0; k < LEAF; k++) {
             double below = b->lo[a][k] - q->hi[a], above = q->lo[a] - b->hi[a][k];
             double d = below > above ? below : above;
 
@@ -22,48 +18,77 @@ static unsigned plain_near_boxes(const struct box8 *b, const struct query *q, in
             gap[k] += d * d;
         }
     }
-    for (unsigned k = 0; k < BOXES_FAN; k++) {
+    for (unsigned k = 0; k < LEAF; k++) {
         double reach = b->reach[k] > q->reach ? b->reach[k] : q->reach;
 
+        reach *= 1 + MARGIN;
         mask |= (unsigned)(gap[k] <= reach * reach) << k;
     }
     return mask;
 }
 
-static void plain_pack(struct packed_leaf *p, const struct boxes *t, const struct frame *f,
-                       uint32_t leaf)
+static void plain_pack(struct packed_leaf *p, struct packed_box8 *box, size_t k,
+                       const struct sources *s, const struct frame *f, uint32_t leaf)
 {
-    size_t first = (size_t)leaf * BOXES_FAN,
-           n = t->n - first < BOXES_FAN ? t->n - first : BOXES_FAN;
-    double tail[BOXES_FAN];
-    float s[BOXES_FAN] = {0};
+    size_t first = (size_t)leaf * LEAF, last = first + LEAF < s->n ? first + LEAF : s->n;
+    double room[LEAF];
+    const double *h;
 
-    for (int a = 0; a < t->dim; a++) {
-        const double *from = t->x[a] + first;
+    memset(p, 0, sizeof *p);
+    for (int a = 0; a < s->dim; a++) {
+        const double *from = filter_eight(s->x[a], first, last, room);
 
-        if (n < BOXES_FAN) {
-            for (size_t k = 0; k < BOXES_FAN; k++) {
-                tail[k] = k < n ? from[k] : f->centre[a];
-            }
-            from = tail;
+        box->lo[a][k] = INFINITY;
+        box->hi[a][k] = -INFINITY;
+        for (size_t i = 0; i < LEAF; i++) {
+            double x = (from[i] - f->centre[a]) * f->inverse;
+            float near;
+
+            x = x < FILTER_FAR ? x : FILTER_FAR;
+            near = (float)(x > -FILTER_FAR ? x : -FILTER_FAR);
+            p->x[a][i] = near;
+            p->s[i] += near * near;
+            box->lo[a][k] = near < box->lo[a][k] ? near : box->lo[a][k];
+            box->hi[a][k] = near > box->hi[a][k] ? near : box->hi[a][k];
         }
-        for (size_t k = 0; k < BOXES_FAN; k++) {
-            double x = (from[k] - f->centre[a]) * f->inverse;
+    }
+    box->reach[k] = 0;
+    h = s->scale > 0 ? filter_eight(s->h, first, last, room) : NULL;
+    for (size_t i = 0; i < LEAF; i++) {
+        float reach = h ? (float)(s->scale * h[i] * f->inverse) : 0;
 
-            x = x < FAR ? x : FAR;
-            p->x[a][k] = (float)(x > -FAR ? x : -FAR);
-            s[k] += p->x[a][k] * p->x[a][k];
+        p->r2[i] = reach * reach;
+        p->s[i] = first + i < last ? p->s[i] : INFINITY;
+        box->reach[k] = reach > box->reach[k] ? reach : box->reach[k];
+    }
+}
+
+static void plain_lanes(struct lanes *t, const struct cloud *c, double scale, const struct frame *f,
+                        size_t first, size_t last)
+{
+    float least = INFINITY;
+
+    memset(t, 0, sizeof *t);
+    for (size_t i = 0; i < LEAF; i++) {
+        size_t k = first + i < last ? first + i : last - 1;
+        float reach = (float)(scale * c->h[k] * f->inverse);
+        double a2 = 0;
+
+        for (int a = 0; a < c->dim; a++) {
+            double x = (c->x[a][k] - f->centre[a]) * f->inverse;
+            float near = (float)x;
+
+            t->m2a[a][i] = -2 * near;
+            a2 += x * x;
+            t->lo[a] = i == 0 || near < t->lo[a] ? near : t->lo[a];
+            t->hi[a] = i == 0 || near > t->hi[a] ? near : t->hi[a];
         }
+        t->a2[i] = (float)a2;
+        t->r2[i] = reach * reach;
+        t->reach = reach > t->reach ? reach : t->reach;
+        least = reach < least ? reach : least;
     }
-    for (size_t k = 0; k < BOXES_FAN; k++) {
-        p->s[k] = k < n ? s[k] : INFINITY;
-        p->r2[k] = 0;
-    }
-    for (size_t k = 0; k < n && t->scale > 0; k++) {
-        double reach = t->scale * t->h[first + k] * f->inverse;
-
-        p->r2[k] = (float)(reach * reach);
-    }
+    t->uniform = t->reach <= UNIFORM * least;
 }
 
 static size_t plain_near_leaves(const struct packed_box8 *boxes, size_t n, const struct lanes *t,
@@ -71,12 +96,12 @@ static size_t plain_near_leaves(const struct packed_box8 *boxes, size_t n, const
 {
     size_t found = 0;
 
-    for (size_t q = 0; q < n; q += BOXES_FAN) {
-        const struct packed_box8 *b = &boxes[q / BOXES_FAN];
-        float gap[BOXES_FAN] = {0};
+    for (size_t q = 0; q < n; q += LEAF) {
+        const struct packed_box8 *b = &boxes[q / LEAF];
+        float gap[LEAF] = {0};
 
         for (int a = 0; a < dim; a++) {
-            for (int k = 0; k < BOXES_FAN; k++) {
+            for (int k = 0; k < LEAF; k++) {
                 float below = b->lo[a][k] - t->hi[a], above = t->lo[a] - b->hi[a][k];
                 float d = below > above ? below : above;
 
@@ -84,9 +109,10 @@ static size_t plain_near_leaves(const struct packed_box8 *boxes, size_t n, const
                 gap[k] += d * d;
             }
         }
-        for (unsigned k = 0; k < BOXES_FAN; k++) {
+        for (unsigned k = 0; k < LEAF; k++) {
             float reach = b->reach[k] > t->reach ? b->reach[k] : t->reach;
 
+            reach *= 1 + (float)MARGIN;
             out[found] = (uint32_t)q + k;
             found += gap[k] <= reach * reach;
         }
@@ -99,7 +125,7 @@ static inline void plain_nearest(const struct packed_leaf *p, const struct lanes
                                  float *any, float *own)
 {
     for (int i = 0; i < 8; i++) {
-        for (int k = 0; k < BOXES_FAN; k++) {
+        for (int k = 0; k < LEAF; k++) {
             float d = t->a2[i];
 
             for (int a = 0; a < dim; a++) {
@@ -120,254 +146,36 @@ static size_t plain_near_points(const struct packed_leaf *pack, const uint32_t *
 
     for (size_t q = 0; q < n; q++) {
         const struct packed_leaf *p = &pack[chosen[q]];
-        float any[BOXES_FAN], own[BOXES_FAN];
+        float any[LEAF], own[LEAF];
 
-        for (int k = 0; k < BOXES_FAN; k++) {
+        for (int k = 0; k < LEAF; k++) {
             any[k] = own[k] = 3e38f;
         }
         plain_nearest(p, t, dim, any, own);
-        for (unsigned k = 0; k < BOXES_FAN; k++) {
-            out[found] = leaf[chosen[q]] * BOXES_FAN + k;
+        for (unsigned k = 0; k < LEAF; k++) {
+            out[found] = leaf[chosen[q]] * LEAF + k;
             found += (own[k] <= -p->s[k]) | (any[k] <= p->r2[k] - p->s[k]);
         }
     }
     return found;
 }
 
-static const struct filter plain = {plain_near_boxes, plain_pack, plain_near_leaves,
-                                    plain_near_points};
+static void plain_steps(uint16_t *out, const uint32_t *found, size_t n, uint32_t base)
+{
+    for (size_t k = 0; k < n; k++) {
+        out[k] = (uint16_t)(found[k] - base);
+    }
+}
+
+static const struct filter plain = {plain_near_boxes,  plain_pack,        plain_lanes,
+                                    plain_near_leaves, plain_near_points, plain_steps};
 
 const struct filter *filter_plain(void)
 {
     return &plain;
 }
 
-/* -- AVX2 -------------------------------------------------------------------------------------- */
-
-#if defined(__x86_64__) && defined(__GNUC__)
-#include <immintrin.h>
-
-#define AVX2 __attribute__((target("avx2,fma")))
-#define AVX2_INLINE static inline __attribute__((always_inline, target("avx2,fma")))
-
-AVX2_INLINE unsigned avx2_near_four(const struct box8 *b, int k, const struct query *q, int dim)
-{
-    __m256d gap = _mm256_setzero_pd(), zero = gap, reach;
-
-    for (int a = 0; a < dim; a++) {
-        __m256d below = _mm256_sub_pd(_mm256_load_pd(&b->lo[a][k]), _mm256_set1_pd(q->hi[a]));
-        __m256d above = _mm256_sub_pd(_mm256_set1_pd(q->lo[a]), _mm256_load_pd(&b->hi[a][k]));
-        __m256d d = _mm256_max_pd(_mm256_max_pd(below, above), zero);
-
-        gap = _mm256_fmadd_pd(d, d, gap);
-    }
-    reach = _mm256_max_pd(_mm256_load_pd(&b->reach[k]), _mm256_set1_pd(q->reach));
-    return (unsigned)_mm256_movemask_pd(
-        _mm256_cmp_pd(gap, _mm256_mul_pd(reach, reach), _CMP_LE_OQ));
-}
-
-AVX2 static unsigned avx2_near_boxes(const struct box8 *b, const struct query *q, int dim)
-{
-    if (dim == 3) {
-        return avx2_near_four(b, 0, q, 3) | avx2_near_four(b, 4, q, 3) << 4;
-    }
-    if (dim == 2) {
-        return avx2_near_four(b, 0, q, 2) | avx2_near_four(b, 4, q, 2) << 4;
-    }
-    return avx2_near_four(b, 0, q, 1) | avx2_near_four(b, 4, q, 1) << 4;
-}
-
-/* Eight doubles, moved and scaled, as floats. */
-AVX2_INLINE __m256 avx2_float(const double *x, double centre, double inverse)
-{
-    __m256d c = _mm256_set1_pd(centre), f = _mm256_set1_pd(inverse);
-    __m128 low = _mm256_cvtpd_ps(_mm256_mul_pd(_mm256_sub_pd(_mm256_loadu_pd(x), c), f));
-    __m128 high = _mm256_cvtpd_ps(_mm256_mul_pd(_mm256_sub_pd(_mm256_loadu_pd(x + 4), c), f));
-
-    return _mm256_insertf128_ps(_mm256_castps128_ps256(low), high, 1);
-}
-
-AVX2 static void avx2_pack(struct packed_leaf *p, const struct boxes *t, const struct frame *f,
-                           uint32_t leaf)
-{
-    size_t first = (size_t)leaf * BOXES_FAN;
-    __m256 s = _mm256_setzero_ps(), r2 = s, far = _mm256_set1_ps((float)FAR);
-
-    if (first + BOXES_FAN > t->n) {
-        plain_pack(p, t, f, leaf);
-        return;
-    }
-    for (int a = 0; a < t->dim; a++) {
-        __m256 x = avx2_float(t->x[a] + first, f->centre[a], f->inverse);
-
-        x = _mm256_max_ps(_mm256_min_ps(x, far), _mm256_sub_ps(_mm256_setzero_ps(), far));
-        _mm256_store_ps(p->x[a], x);
-        s = _mm256_fmadd_ps(x, x, s);
-    }
-    if (t->scale > 0) {
-        r2 = avx2_float(t->h + first, 0, f->inverse * t->scale);
-        r2 = _mm256_mul_ps(r2, r2);
-    }
-    _mm256_store_ps(p->s, s);
-    _mm256_store_ps(p->r2, r2);
-}
-
-/* For every byte the numbers of its set bits, lowest first, a byte each. */
-#define BIT(m, b) ((uint64_t)((m) >> (b)&1))
-#define BELOW(m, b)                                                                                \
-    (((b) > 0) * BIT(m, 0) + ((b) > 1) * BIT(m, 1) + ((b) > 2) * BIT(m, 2) +                       \
-     ((b) > 3) * BIT(m, 3) + ((b) > 4) * BIT(m, 4) + ((b) > 5) * BIT(m, 5) +                       \
-     ((b) > 6) * BIT(m, 6))
-#define PUT(m, b) (BIT(m, b) * (b) << 8 * BELOW(m, b))
-#define SET1(m)                                                                                    \
-    PUT(m, 0) | PUT(m, 1) | PUT(m, 2) | PUT(m, 3) | PUT(m, 4) | PUT(m, 5) | PUT(m, 6) | PUT(m, 7)
-#define SET4(m) SET1(m), SET1((m) + 1), SET1((m) + 2), SET1((m) + 3)
-#define SET16(m) SET4(m), SET4((m) + 4), SET4((m) + 8), SET4((m) + 12)
-#define SET64(m) SET16(m), SET16((m) + 16), SET16((m) + 32), SET16((m) + 48)
-static const uint64_t set_bits[256] = {SET64(0), SET64(64), SET64(128), SET64(192)};
-
-/* Writes base + k for every set bit k of the mask (and rubbish up to 8 places on). */
-AVX2_INLINE size_t avx2_put(uint32_t *out, uint32_t base, unsigned mask)
-{
-    __m256i k =
-        _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)(const void *)&set_bits[mask]));
-
-    _mm256_storeu_si256((__m256i *)(void *)out, _mm256_add_epi32(k, _mm256_set1_epi32((int)base)));
-    return (size_t)__builtin_popcount(mask);
-}
-
-AVX2_INLINE size_t avx2_leaves(const struct packed_box8 *boxes, size_t n, const struct lanes *t,
-                               int dim, uint32_t *out)
-{
-    __m256 zero = _mm256_setzero_ps(), own = _mm256_set1_ps(t->reach);
-    size_t found = 0;
-
-    for (size_t q = 0; q < n; q += BOXES_FAN) {
-        const struct packed_box8 *b = &boxes[q / BOXES_FAN];
-        __m256 gap = zero, reach = _mm256_max_ps(_mm256_load_ps(b->reach), own);
-
-        for (int a = 0; a < dim; a++) {
-            __m256 below = _mm256_sub_ps(_mm256_load_ps(b->lo[a]), _mm256_set1_ps(t->hi[a]));
-            __m256 above = _mm256_sub_ps(_mm256_set1_ps(t->lo[a]), _mm256_load_ps(b->hi[a]));
-            __m256 d = _mm256_max_ps(_mm256_max_ps(below, above), zero);
-
-            gap = _mm256_fmadd_ps(d, d, gap);
-        }
-        reach = _mm256_mul_ps(reach, reach);
-        found += avx2_put(out + found, (uint32_t)q,
-                          (unsigned)_mm256_movemask_ps(_mm256_cmp_ps(gap, reach, _CMP_LE_OQ)));
-    }
-    return found;
-}
-
-AVX2 static size_t avx2_near_leaves(const struct packed_box8 *boxes, size_t n,
-                                    const struct lanes *t, int dim, uint32_t *out)
-{
-    if (dim == 3) {
-        return avx2_leaves(boxes, n, t, 3, out);
-    }
-    return dim == 2 ? avx2_leaves(boxes, n, t, 2, out) : avx2_leaves(boxes, n, t, 1, out);
-}
-
-AVX2_INLINE unsigned avx2_verdict(const struct packed_leaf *p, const struct lanes *t, int uniform,
-                                  __m256 any, __m256 own)
-{
-    __m256 s = _mm256_load_ps(p->s), r2 = _mm256_load_ps(p->r2), hit;
-
-    if (uniform) {
-        r2 = _mm256_max_ps(r2, _mm256_set1_ps(t->reach * t->reach));
-        hit = _mm256_cmp_ps(any, _mm256_sub_ps(r2, s), _CMP_LE_OQ);
-    } else {
-        hit = _mm256_or_ps(_mm256_cmp_ps(any, _mm256_sub_ps(r2, s), _CMP_LE_OQ),
-                           _mm256_cmp_ps(own, _mm256_sub_ps(_mm256_setzero_ps(), s), _CMP_LE_OQ));
-    }
-    return (unsigned)_mm256_movemask_ps(hit);
-}
-
-/* Two leaves at a time, for they share what is loaded of the lanes. */
-AVX2_INLINE void avx2_two(const struct packed_leaf *p, const struct packed_leaf *q,
-                          const struct lanes *t, int dim, int uniform, unsigned *mask)
-{
-    __m256 any0 = _mm256_set1_ps(3e38f), any1 = any0, own0 = any0, own1 = any0;
-
-#pragma GCC unroll 8
-    for (int i = 0; i < 8; i++) {
-        __m256 d0 = _mm256_broadcast_ss(&t->a2[i]), d1 = d0;
-
-#pragma GCC unroll 3
-        for (int a = 0; a < dim; a++) {
-            __m256 m2a = _mm256_broadcast_ss(&t->m2a[a][i]);
-
-            d0 = _mm256_fmadd_ps(m2a, _mm256_load_ps(p->x[a]), d0);
-            d1 = _mm256_fmadd_ps(m2a, _mm256_load_ps(q->x[a]), d1);
-        }
-        any0 = _mm256_min_ps(d0, any0);
-        any1 = _mm256_min_ps(d1, any1);
-        if (!uniform) {
-            __m256 r2 = _mm256_broadcast_ss(&t->r2[i]);
-
-            own0 = _mm256_min_ps(_mm256_sub_ps(d0, r2), own0);
-            own1 = _mm256_min_ps(_mm256_sub_ps(d1, r2), own1);
-        }
-    }
-    mask[0] = avx2_verdict(p, t, uniform, any0, own0);
-    mask[1] = avx2_verdict(q, t, uniform, any1, own1);
-}
-
-AVX2_INLINE size_t avx2_points(const struct packed_leaf *pack, const uint32_t *leaf,
-                               const uint32_t *chosen, size_t n, const struct lanes *t, int dim,
-                               int uniform, uint32_t *out)
-{
-    size_t found = 0;
-    unsigned mask[2];
-
-    for (size_t q = 0; q + 1 < n; q += 2) {
-        uint32_t a = chosen[q], b = chosen[q + 1];
-
-        avx2_two(&pack[a], &pack[b], t, dim, uniform, mask);
-        found += avx2_put(out + found, leaf[a] * BOXES_FAN, mask[0]);
-        found += avx2_put(out + found, leaf[b] * BOXES_FAN, mask[1]);
-    }
-    if (n % 2) {
-        uint32_t a = chosen[n - 1];
-
-        avx2_two(&pack[a], &pack[a], t, dim, uniform, mask);
-        found += avx2_put(out + found, leaf[a] * BOXES_FAN, mask[0]);
-    }
-    return found;
-}
-
-AVX2 static size_t avx2_near_points(const struct packed_leaf *pack, const uint32_t *leaf,
-                                    const uint32_t *chosen, size_t n, const struct lanes *t,
-                                    int dim, uint32_t *out)
-{
-    switch (2 * dim + (t->uniform != 0)) {
-    case 2:
-        return avx2_points(pack, leaf, chosen, n, t, 1, 0, out);
-    case 3:
-        return avx2_points(pack, leaf, chosen, n, t, 1, 1, out);
-    case 4:
-        return avx2_points(pack, leaf, chosen, n, t, 2, 0, out);
-    case 5:
-        return avx2_points(pack, leaf, chosen, n, t, 2, 1, out);
-    case 6:
-        return avx2_points(pack, leaf, chosen, n, t, 3, 0, out);
-    default:
-        return avx2_points(pack, leaf, chosen, n, t, 3, 1, out);
-    }
-}
-
-static const struct filter avx2 = {avx2_near_boxes, avx2_pack, avx2_near_leaves, avx2_near_points};
-
 const struct filter *filter_best(void)
 {
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? &avx2 : &plain;
+    return filter_avx2() ? filter_avx2() : &plain;
 }
-
-#else
-
-const struct filter *filter_best(void)
-{
-    return &plain;
-}
-#endif

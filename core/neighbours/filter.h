@@ -1,16 +1,16 @@
-/* neighbours/filter.h -- the inner loops of the neighbour search: which boxes of the tree are
- * near a query, and which sources are within reach of any destination of a group. Plain C, and
+/* neighbours/filter.h -- the inner loops of the neighbour search: which boxes are near a query, and which sources are within reach of any destination of a group. Plain C, and
  * the same with AVX2 and FMA where the processor has them; both keep what is within reach, and
  * may differ on what lies within SLACK beyond it. */
 #ifndef NEIGHBOURS_FILTER_H
 #define NEIGHBOURS_FILTER_H
 
-#include "neighbours/boxes.h"
+#include "neighbours/sources.h"
 
-/* Every reach is enlarged so much, relatively: covers the rounding of the filter's single
- * precision for groups up to SPREAD_MOST times the smallest reach in them. */
-#define SLACK 5e-5
-#define SPREAD_MOST 8.0
+#include <math.h>
+
+struct box8 { /* eight boxes, and the largest reach in each */
+    double lo[3][LEAF], hi[3][LEAF], reach[LEAF];
+};
 
 /* A query's centre and unit of length. */
 struct frame {
@@ -19,13 +19,13 @@ struct frame {
 
 /* A leaf's points in a query's frame. */
 struct packed_leaf {
-    float x[3][BOXES_FAN];
-    float s[BOXES_FAN];  /* square of the distance to the centre; INFINITY: no point */
-    float r2[BOXES_FAN]; /* square of its reach; 0 if that does not count */
+    float x[3][LEAF];
+    float s[LEAF];  /* square of the distance to the centre; INFINITY: no point */
+    float r2[LEAF]; /* square of its reach; 0 if that does not count */
 };
 
 struct packed_box8 { /* eight leaves' boxes, likewise */
-    float lo[3][BOXES_FAN], hi[3][BOXES_FAN], reach[BOXES_FAN];
+    float lo[3][LEAF], hi[3][LEAF], reach[LEAF];
 };
 
 /* A group's destinations, likewise. Lane i sees a source b if s - 2 a.b + a^2 <= max(reach^2,
@@ -39,11 +39,14 @@ struct lanes {
 };
 
 struct filter {
-    /* Bit k: box k of the eight is nearer to the query than the larger reach. */
+    /* Bit k: box k of the eight is nearer to the query than the larger reach, MARGIN included. */
     unsigned (*near_boxes)(const struct box8 *boxes, const struct query *q, int dim);
-    /* Fills a leaf's pack. */
-    void (*pack)(struct packed_leaf *p, const struct boxes *t, const struct frame *f,
-                 uint32_t leaf);
+    /* Fills a leaf's pack, and box k of the eight with the box around it. */
+    void (*pack)(struct packed_leaf *p, struct packed_box8 *box, size_t k, const struct sources *s,
+                 const struct frame *f, uint32_t leaf);
+    /* Destinations [first, last) of a cloud, at most eight, whose reach is scale * h. */
+    void (*lanes)(struct lanes *t, const struct cloud *c, double scale, const struct frame *f,
+                  size_t first, size_t last);
     /* Writes which of n packed boxes (padded to a multiple of 8 by boxes at infinity) are near
      * the lanes, as numbers within the pack; their count. Room for n + 8. */
     size_t (*near_leaves)(const struct packed_box8 *boxes, size_t n, const struct lanes *t, int dim,
@@ -53,15 +56,59 @@ struct filter {
     size_t (*near_points)(const struct packed_leaf *pack, const uint32_t *leaf,
                           const uint32_t *chosen, size_t n, const struct lanes *t, int dim,
                           uint32_t *out);
+    /* Writes found[k] - base; room for STEPS_MORE beyond n, read and written. */
+    void (*steps)(uint16_t *out, const uint32_t *found, size_t n, uint32_t base);
 };
 
-/* The filter for this processor; the plain one for the tests. */
+#define STEPS_MORE 16
+#define UNIFORM 1.004f /* reaches of a group that differ less are taken as one */
+/* Points further away than so many units are taken to be there: squares must stay numbers. */
+#define FILTER_FAR 1e18
+
+/* The filter for this processor; the plain one for the tests; with AVX2, NULL where there is none. */
 const struct filter *filter_best(void);
 const struct filter *filter_plain(void);
+const struct filter *filter_avx2(void);
+
+/* Eight values of a column from `first` on, those beyond `last` as the one before it. */
+static inline const double *filter_eight(const double *x, size_t first, size_t last, double *room)
+{
+    if (last - first >= LEAF) {
+        return x + first;
+    }
+    for (size_t k = 0; k < LEAF; k++) {
+        room[k] = x[first + k < last ? first + k : last - 1];
+    }
+    return room;
+}
+
+static inline void box_empty(struct box8 *b, size_t k)
+{
+    for (int a = 0; a < 3; a++) {
+        b->lo[a][k] = INFINITY;
+        b->hi[a][k] = -INFINITY;
+    }
+    b->reach[k] = 0;
+}
+
+/* Makes box k of `out` the one around eight. */
+static inline void box_around(const struct box8 *eight, struct box8 *out, size_t k)
+{
+    box_empty(out, k);
+    for (size_t i = 0; i < LEAF; i++) {
+        for (int a = 0; a < 3; a++) {
+            double lo = eight->lo[a][i], hi = eight->hi[a][i];
+
+            out->lo[a][k] = lo < out->lo[a][k] ? lo : out->lo[a][k];
+            out->hi[a][k] = hi > out->hi[a][k] ? hi : out->hi[a][k];
+        }
+        out->reach[k] = eight->reach[i] > out->reach[k] ? eight->reach[i] : out->reach[k];
+    }
+}
 
 /* group_list_make with a filter of the caller's choice. */
 int filter_make(struct group_list *list, const struct cloud *dst, const struct cloud *src,
-                bool symmetric, double skin, int threads, const struct filter *filter,
-                struct error *e);
+                bool symmetric, double skin, const struct neighbour_manager *manager, int threads,
+                const struct filter *filter, struct error *e);
 
 #endif

@@ -13,7 +13,7 @@
 
 /* Where a chunk's lists stand in its worker's memory. */
 struct chunk {
-    size_t worker, begin, n;
+    size_t worker, span, n_span, step, n_step;
 };
 
 struct team {
@@ -39,15 +39,68 @@ static void team_run(struct team *t, const struct job *j, size_t n_group)
         size_t me = (size_t)worker_number(), first = k * CHUNK, last = first + CHUNK;
         struct worker *w = &t->worker[me];
 
-        t->chunk[k].worker = me;
-        t->chunk[k].begin = w->n_out;
+        t->chunk[k] = (struct chunk){.worker = me, .span = w->n_span, .step = w->n_step};
         worker_make(j, w, first, last < n_group ? last : n_group);
-        t->chunk[k].n = w->n_out - t->chunk[k].begin;
+        t->chunk[k].n_span = w->n_span - t->chunk[k].span;
+        t->chunk[k].n_step = w->n_step - t->chunk[k].step;
     }
 }
 
-/* Joins the chunks in the order of their groups. */
-static int team_collect(struct group_list *list, struct team *t, struct error *e)
+/* A single worker works in the list's own memory. */
+static void list_lend(struct group_list *list, struct worker *w)
+{
+    w->span = list->span;
+    w->span_capacity = list->span_capacity;
+    w->step = list->step;
+    w->step_capacity = list->step_capacity;
+    list->span = NULL;
+    list->step = NULL;
+    list->span_capacity = list->step_capacity = 0;
+}
+
+static void list_take(struct group_list *list, struct worker *w)
+{
+    list->span = w->span;
+    list->span_capacity = w->span_capacity;
+    list->step = w->step;
+    list->step_capacity = w->step_capacity;
+    w->span = NULL;
+    w->step = NULL;
+    w->span_capacity = w->step_capacity = 0;
+}
+
+/* An array of n elements and little more; what was in it is kept if `keep`. */
+static int resize(void *array, size_t *capacity, size_t n, size_t size, bool keep, struct error *e)
+{
+    void *old, *fresh;
+
+    memcpy(&old, array, sizeof old);
+    if (n <= *capacity && *capacity - n <= n / 32 + 64) {
+        return 0;
+    }
+    n += n / 128 + 16;
+    if (!keep) {
+        free(old);
+        old = NULL;
+    }
+    fresh = realloc(old, n * size);
+    *capacity = fresh ? n : keep ? *capacity : 0;
+    old = fresh ? fresh : old;
+    memcpy(array, &old, sizeof old);
+    return fresh ? 0 : error_memory(e, "neighbour lists", n * size);
+}
+
+static int list_resize(struct group_list *list, bool keep, struct error *e)
+{
+    return resize(&list->span, &list->span_capacity, list->n_span, sizeof *list->span, keep, e) ||
+                   resize(&list->step, &list->step_capacity, list->n_entry, sizeof *list->step,
+                          keep, e)
+               ? -1
+               : 0;
+}
+
+/* Where a chunk's spans and steps go: counts become begins. */
+static void team_place(struct group_list *list, const struct team *t)
 {
     uint64_t sum = 0;
 
@@ -57,31 +110,50 @@ static int team_collect(struct group_list *list, struct team *t, struct error *e
         list->begin[g] = sum;
         sum += count;
     }
-    list->begin[list->n_group] = sum;
-    if (t->n_worker == 1) {
-        list->source = t->worker[0].out; /* which was the list's to begin with */
-        list->capacity = t->worker[0].out_capacity;
-        t->worker[0].out = NULL;
-        return 0;
+    list->begin[list->n_group] = list->n_span = sum;
+    list->n_entry = 0;
+    for (size_t k = 0; k < t->n_worker; k++) {
+        list->n_entry += t->worker[k].n_step;
     }
-    if (sum > list->capacity) {
-        free(list->source);
-        list->capacity = sum + sum / 16;
-        list->source = malloc(list->capacity * sizeof *list->source);
-        if (!list->source) {
-            list->capacity = 0;
-            return error_memory(e, "neighbour lists", sum * sizeof *list->source);
-        }
+}
+
+/* Joins the chunks in the order of their groups. */
+static int team_collect(struct group_list *list, struct team *t, struct error *e)
+{
+    size_t *first = NULL, sum = 0;
+
+    team_place(list, t);
+    if (t->n_worker == 1) {
+        list_take(list, &t->worker[0]);
+        return list_resize(list, true, e);
+    }
+    first = malloc(t->n_chunk * sizeof *first);
+    if (!first) {
+        return error_memory(e, "neighbour lists", t->n_chunk * sizeof *first);
+    }
+    for (size_t k = 0; k < t->n_chunk; k++) {
+        first[k] = sum;
+        sum += t->chunk[k].n_step;
+    }
+    if (list_resize(list, false, e) != 0) {
+        free(first);
+        return -1;
     }
 #pragma omp parallel for schedule(static) num_threads((int)t->n_worker)
     for (size_t k = 0; k < t->n_chunk; k++) {
         const struct chunk *c = &t->chunk[k];
+        const struct worker *w = &t->worker[c->worker];
+        sph_span *span = list->span + list->begin[k * CHUNK];
 
-        if (c->n > 0) {
-            memcpy(list->source + list->begin[k * CHUNK], t->worker[c->worker].out + c->begin,
-                   c->n * sizeof *list->source);
+        for (size_t s = 0; s < c->n_span; s++) {
+            span[s] = w->span[c->span + s];
+            span[s].first += first[k] - c->step;
+        }
+        if (c->n_step > 0) {
+            memcpy(list->step + first[k], w->step + c->step, c->n_step * sizeof *w->step);
         }
     }
+    free(first);
     return 0;
 }
 
@@ -91,10 +163,11 @@ static int team_check(struct group_list *list, const struct team *t, struct erro
     size_t bytes = 0;
     bool no_memory = false;
 
-    list->candidates = 0;
+    list->candidates = list->visited = 0;
     for (size_t k = 0; k < t->n_worker; k++) {
         list->candidates += t->worker[k].candidates;
-        bytes += t->worker[k].n_out * sizeof *t->worker[k].out;
+        list->visited += t->worker[k].visited;
+        bytes += t->worker[k].n_step * sizeof *t->worker[k].step;
         no_memory = no_memory || t->worker[k].no_memory;
     }
     return no_memory ? error_memory(e, "neighbour lists, and more", bytes) : 0;
@@ -114,15 +187,15 @@ static int list_fill(struct group_list *list, const struct job *j, int threads, 
         goto done;
     }
     if (t.n_worker == 1) {
-        t.worker[0].out = list->source;
-        t.worker[0].out_capacity = list->capacity;
-        list->source = NULL;
-        list->capacity = 0;
+        list_lend(list, &t.worker[0]);
     }
     team_run(&t, j, list->n_group);
     status = team_check(list, &t, e);
     if (status == 0) {
         status = team_collect(list, &t, e);
+    }
+    for (size_t k = 0; k < t.n_worker; k++) {
+        list->search_bytes += worker_bytes(&t.worker[k]);
     }
 done:
     for (size_t k = 0; t.worker && k < t.n_worker; k++) {
@@ -135,9 +208,10 @@ done:
 
 static int list_reserve(struct group_list *list, size_t n_group, struct error *e)
 {
-    list->n_group = 0;
+    list->n_group = list->n_span = 0;
+    list->n_entry = 0;
     if (n_group + 1 > list->group_capacity) {
-        size_t capacity = n_group + n_group / 16 + 1;
+        size_t capacity = n_group + n_group / 128 + 1;
         uint64_t *begin = realloc(list->begin, capacity * sizeof *begin);
 
         if (!begin) {
@@ -149,16 +223,6 @@ static int list_reserve(struct group_list *list, size_t n_group, struct error *e
     list->n_group = n_group;
     memset(list->begin, 0, (n_group + 1) * sizeof *list->begin);
     return 0;
-}
-
-static double mean_reach(const struct cloud *c, double scale)
-{
-    double sum = 0;
-
-    for (size_t i = 0; i < c->n; i++) {
-        sum += c->h[i];
-    }
-    return c->n > 0 ? scale * sum / (double)c->n : 0;
 }
 
 static int check(const struct cloud *dst, const struct cloud *src, bool symmetric, double skin,
@@ -175,59 +239,72 @@ static int check(const struct cloud *dst, const struct cloud *src, bool symmetri
     if ((dst->n > 0 && !dst->h) || (symmetric && src->n > 0 && !src->h)) {
         return error_set(e, EXIT_RUN, "neighbour lists of particles without smoothing length");
     }
-    if (boxes_check(dst, "destination", e) != 0) {
+    if (cloud_check(dst, "destination", e) != 0) {
         return -1;
     }
     return dst->n == src->n && dst->h == src->h && dst->x[0] == src->x[0]
                ? 0
-               : boxes_check(src, "source", e);
+               : cloud_check(src, "source", e);
 }
 
 int filter_make(struct group_list *list, const struct cloud *dst, const struct cloud *src,
-                bool symmetric, double skin, int threads, const struct filter *filter,
-                struct error *e)
+                bool symmetric, double skin, const struct neighbour_manager *manager, int threads,
+                const struct filter *filter, struct error *e)
 {
     double factor = (1 + skin) * (1 + SLACK);
-    struct job j = {.dst = dst, .filter = filter, .scale = dst->scale * factor};
-    int status;
+    struct sources sources;
+    struct job j = {.dst = dst, .filter = filter, .scale = dst->scale * factor, .src = &sources};
+    size_t bytes = 0;
+    void *search;
+    int status = -1;
 
+    threads = threads > 0 ? threads : 1;
     if (check(dst, src, symmetric, skin, e) != 0 ||
         list_reserve(list, (dst->n + LANES - 1) / LANES, e) != 0) {
         return -1;
     }
     list->symmetric = symmetric;
-    list->candidates = 0;
+    list->candidates = list->visited = list->search_bytes = 0;
     if (dst->n == 0 || src->n == 0) {
         return 0;
     }
-    threads = threads > 0 ? threads : 1;
-    if (boxes_make(&j.tree, src, symmetric ? src->scale * factor : 0, mean_reach(dst, j.scale),
-                   threads, e) != 0) {
+    if (sources_make(&sources, dst, src, symmetric, factor, threads, e) != 0) {
         return -1;
     }
+    list->manager = manager ? manager : neighbour_manager_choose(dst, src, symmetric);
+    j.manager = list->manager->calls;
+    j.search = search = j.manager->make(&sources, filter, threads, &bytes, e);
     j.count = list->begin;
-    status = list_fill(list, &j, threads, e);
-    boxes_free(&j.tree);
+    list->search_bytes = sources.bytes + bytes;
+    if (search) {
+        status = list_fill(list, &j, threads, e);
+        j.manager->free(search);
+    }
+    sources_free(&sources);
     if (status != 0) {
-        list->n_group = 0; /* nobody shall read half a list */
+        list->n_group = list->n_span = 0; /* nobody shall read half a list */
+        list->n_entry = 0;
     }
     return status;
 }
 
 int group_list_make(struct group_list *list, const struct cloud *dst, const struct cloud *src,
-                    bool symmetric, double skin, int threads, struct error *e)
+                    bool symmetric, double skin, const struct neighbour_manager *manager,
+                    int threads, struct error *e)
 {
-    return filter_make(list, dst, src, symmetric, skin, threads, filter_best(), e);
+    return filter_make(list, dst, src, symmetric, skin, manager, threads, filter_best(), e);
 }
 
 void group_list_fini(struct group_list *list)
 {
     free(list->begin);
-    free(list->source);
+    free(list->span);
+    free(list->step);
     memset(list, 0, sizeof *list);
 }
 
 size_t group_list_bytes(const struct group_list *list)
 {
-    return list->group_capacity * sizeof *list->begin + list->capacity * sizeof *list->source;
+    return list->group_capacity * sizeof *list->begin + list->span_capacity * sizeof *list->span +
+           list->step_capacity * sizeof *list->step;
 }

@@ -7,14 +7,14 @@
  * index of the source, without repeats. Sources up to 0.5 % beyond the enlarged reach may be in
  * it.
  *
- * Behind it stands a tree of boxes over the sources in the order in which they stand, so sort
- * them by cell_order now and then. Sources out of all order are sorted aside, which costs about
- * as much again; a group whose destinations are far apart costs twenty times another. No ratio of
- * smoothing lengths and no outlier makes it slow or large. */
+ * Sort the sources by cell_order now and then: those out of all order are sorted aside, which
+ * costs about as much again, and a group whose destinations are far apart costs twenty times
+ * another. */
 #ifndef NEIGHBOURS_NEIGHBOURS_H
 #define NEIGHBOURS_NEIGHBOURS_H
 
 #include "base/error.h"
+#include <sph/batch.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -28,25 +28,92 @@ struct cloud {
     double scale;
 };
 
+/* The sources of group g, ascending: span[s].base + step[span[s].first + k], k < span[s].count, for
+ * begin[g] <= s < begin[g + 1]. A new span begins only where a source is more than UINT16_MAX
+ * beyond the base. Spans and steps of a group follow those of the one before. */
 struct group_list {
-    uint64_t *begin; /* [n_group + 1] */
-    uint32_t *source;
-    size_t n_group, capacity, group_capacity;
+    uint64_t *begin; /* [n_group + 1]: into span */
+    sph_span *span;  /* [n_span] */
+    uint16_t *step;  /* [n_entry] */
+    size_t n_group, n_span;
+    uint64_t n_entry;
+    size_t group_capacity, span_capacity, step_capacity;
     bool symmetric;
     double true_share; /* set by who counts (group_list_count): true pairs per entry of the list */
-    uint64_t candidates; /* distances computed while making it */
+    const struct neighbour_manager *manager; /* who made it */
+    /* Sources that the manager looked at, times the destinations that asked; of these pairs, those
+     * whose distance was computed; bytes that the search had at most, the list not counted. */
+    uint64_t visited, candidates, search_bytes;
 };
 
+/* Who finds the sources near a place. All give the same lists, bit for bit. */
+enum neighbour_manager_id {
+    NEIGHBOURS_BOXES,
+    NEIGHBOURS_CELLS,
+    NEIGHBOURS_RADIX,
+    NEIGHBOURS_OCTREE
+};
+
+struct neighbour_manager {
+    const char *name, *doc;
+    const struct manager_calls *calls;
+};
+
+/* The k-th (enum neighbour_manager_id); NULL if there are fewer. */
+const struct neighbour_manager *neighbour_manager_at(size_t k);
+/* NULL if none has this name. */
+const struct neighbour_manager *neighbour_manager_find(const char *name);
+/* The one taken where none is asked for. */
+const struct neighbour_manager *neighbour_manager_choose(const struct cloud *dst,
+                                                         const struct cloud *src, bool symmetric);
+
 /* Lists for destinations dst over sources src (which may be the same arrays, self pairs
- * included). `skin` is relative (0.1). threads: how many OpenMP threads; the result is the same
- * for any. src->h may be NULL if !symmetric. Fails, naming the particle by its index, if a
- * position or smoothing length is not a number that can be (finite, h >= 0). Begin with a list of
- * zeros; one that is made again uses its memory again. */
+ * included). `skin` is relative (0.1). manager: NULL for neighbour_manager_choose. threads: how
+ * many OpenMP threads; the result is the same for any. src->h may be NULL if !symmetric. Fails,
+ * naming the particle by its index, if a position or smoothing length is not a number that can be
+ * (finite, h >= 0). Begin with a list of zeros; one that is made again uses its memory again. */
 int group_list_make(struct group_list *list, const struct cloud *dst, const struct cloud *src,
-                    bool symmetric, double skin, int threads, struct error *e);
+                    bool symmetric, double skin, const struct neighbour_manager *manager,
+                    int threads, struct error *e);
 /* Directed pairs within reach (no skin, self pairs included) among those that the list offers. */
 uint64_t group_list_count(const struct group_list *list, const struct cloud *dst,
                           const struct cloud *src);
+/* Entries of groups [first, end). */
+static inline uint64_t group_list_entries(const struct group_list *list, size_t first, size_t end)
+{
+    uint64_t a = list->begin[first], b = list->begin[end];
+
+    return (b < list->n_span ? list->span[b].first : list->n_entry) -
+           (a < list->n_span ? list->span[a].first : list->n_entry);
+}
+
+/* Goes through a group's sources:
+ * for (struct source_walk w = source_walk_begin(list, g); source_walk_next(list, &w);) ... w.source */
+struct source_walk {
+    uint64_t span, end;
+    uint32_t k, source;
+};
+
+static inline struct source_walk source_walk_begin(const struct group_list *list, size_t group)
+{
+    struct source_walk w = {.span = list->begin[group], .end = list->begin[group + 1]};
+
+    return w;
+}
+
+static inline bool source_walk_next(const struct group_list *list, struct source_walk *w)
+{
+    if (w->span < w->end && w->k == list->span[w->span].count) {
+        w->span++;
+        w->k = 0;
+    }
+    if (w->span == w->end) {
+        return false;
+    }
+    w->source = list->span[w->span].base + list->step[list->span[w->span].first + w->k++];
+    return true;
+}
+
 void group_list_fini(struct group_list *list);
 size_t group_list_bytes(const struct group_list *list);
 

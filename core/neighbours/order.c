@@ -7,7 +7,8 @@
  * as the thin ones. */
 #include "neighbours/neighbours.h"
 
-#include "neighbours/boxes.h"
+#include "neighbours/grid.h"
+#include "neighbours/sources.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -21,13 +22,6 @@ struct sorter {
     const struct cloud *c;
     const int64_t *id;
     uint32_t *order, *scratch, *cell; /* [n] each: the order, its next state, the points' cells */
-};
-
-/* A grid of cells over some points. */
-struct grid {
-    double low[3], inverse; /* of the edge */
-    double last[3];         /* cells along an axis, less one */
-    size_t step[3], n;      /* from cell to cell along an axis; all cells */
 };
 
 /* -- Within a cell ----------------------------------------------------------------------------- */
@@ -96,17 +90,6 @@ static void sort_by_x(const struct sorter *s, uint32_t *order, size_t n)
 
 /* -- Cells ------------------------------------------------------------------------------------- */
 
-/* Number of cells of this edge; infinite if there are too many to count. */
-static double count_cells(const double *lo, const double *hi, int dim, double edge)
-{
-    double n = 1;
-
-    for (int a = 0; a < dim; a++) {
-        n *= floor((hi[a] - lo[a]) / edge) + 2;
-    }
-    return n;
-}
-
 /* The edge with about CELL_AIM points a cell, were they even; at most half the longest extent, so
  * that every level gets on. */
 static double crowded_edge(const double *lo, const double *hi, int dim, size_t n)
@@ -128,39 +111,6 @@ static double crowded_edge(const double *lo, const double *hi, int dim, size_t n
     return fmin(longest * pow(volume, 1.0 / axes), longest / 2);
 }
 
-static void grid_init(struct grid *g, const double *lo, const double *hi, int dim, double edge,
-                      size_t points)
-{
-    double most = 2 * (double)points + 64;
-
-    while (count_cells(lo, hi, dim, edge) > most) {
-        edge *= 1.25;
-    }
-    g->inverse = 1 / edge;
-    g->n = 1;
-    for (int a = 0; a < dim; a++) {
-        /* At a multiple of the edge, so that the cells stay while the extremes move. */
-        double anchor = edge * floor(lo[a] / edge);
-
-        g->low[a] = anchor <= lo[a] && lo[a] - anchor <= edge ? anchor : lo[a];
-        g->last[a] = floor((hi[a] - g->low[a]) * g->inverse);
-        g->step[a] = g->n;
-        g->n *= (size_t)g->last[a] + 1;
-    }
-}
-
-static size_t grid_cell(const struct grid *g, const struct cloud *c, uint32_t i)
-{
-    size_t cell = 0;
-
-    for (int a = 0; a < c->dim; a++) {
-        double q = (c->x[a][i] - g->low[a]) * g->inverse;
-
-        cell += g->step[a] * (size_t)(q < g->last[a] ? q : g->last[a]);
-    }
-    return cell;
-}
-
 /* Sorts points [first, first + n) of the order into the grid's cells; ends[k] is then where cell k
  * ends. Stable. */
 static void count_sort(struct sorter *s, const struct grid *g, size_t first, size_t n,
@@ -171,7 +121,7 @@ static void count_sort(struct sorter *s, const struct grid *g, size_t first, siz
 
     memset(ends, 0, g->n * sizeof *ends);
     for (size_t k = 0; k < n; k++) {
-        cell[k] = (uint32_t)grid_cell(g, s->c, order[k]);
+        cell[k] = (uint32_t)grid_cell(g, s->c->x, order[k]);
         ends[cell[k]]++;
     }
     for (size_t k = 0; k < g->n; k++) {
@@ -248,7 +198,7 @@ int cell_order(const struct cloud *points, const int64_t *id, double cell, uint3
     size_t n = points->n;
     int status;
 
-    if (boxes_check(points, "source", e) != 0) {
+    if (cloud_check(points, "source", e) != 0) {
         return -1;
     }
     if (n == 0) {

@@ -1,11 +1,11 @@
 /* neighbours/worker.c -- finds the sources of a run of groups. Reads the job, writes its worker
  * and the counts of its groups.
  *
- * Groups that stand side by side share one walk through the tree of boxes and one copy of the
- * leaves found, in single precision relative to their common centre (a bundle). Each group then
- * takes from that first the leaves, then the points that it sees. A group whose lanes are far
- * apart is taken in pieces. Lists come out ascending, for the tree is walked in order; only
- * pieces, and sources that stand in an order of the tree's own, are sorted, by setting bits. */
+ * Groups that stand side by side share one search and one copy of the leaves found, in single
+ * precision relative to their common centre (a bundle). Each group then takes from that first the
+ * leaves, then the points that it sees. A group whose lanes are far apart is taken in pieces. Leaves
+ * come ascending, so lists do; only those of pieces, and sources that stand in an order of the
+ * search's own, are sorted. */
 #include "neighbours/worker.h"
 
 #include <math.h>
@@ -14,10 +14,9 @@
 
 #define BUNDLE_MOST 16    /* groups in a bundle */
 #define BUNDLE_SPREAD 5.0 /* half the diagonal of a bundle's box, in units of its smallest reach */
-#define UNIFORM 1.004f    /* reaches of a group that differ less are taken as one */
 
 /* Destinations [first, last) that are looked after together. */
-struct span {
+struct stretch {
     size_t first, last;
     struct query q;
     double least; /* reach */
@@ -25,22 +24,23 @@ struct span {
 
 /* -- Memory of a worker ------------------------------------------------------------------------ */
 
-static bool out_reserve(struct worker *w, size_t more)
+/* Room for n elements in an array; what is in it is kept. */
+static bool reserve(struct worker *w, void *array, size_t *capacity, size_t n, size_t size)
 {
-    size_t capacity = w->n_out + more;
-    uint32_t *out;
+    void *old, *more;
 
-    if (capacity <= w->out_capacity) {
+    if (n <= *capacity) {
         return true;
     }
-    capacity += capacity / 2;
-    out = realloc(w->out, capacity * sizeof *out);
-    if (!out) {
+    memcpy(&old, array, sizeof old);
+    n += n / 4 + 64;
+    more = realloc(old, n * size);
+    if (!more) {
         w->no_memory = true;
         return false;
     }
-    w->out = out;
-    w->out_capacity = capacity;
+    memcpy(array, &more, sizeof more);
+    *capacity = n;
     return true;
 }
 
@@ -57,9 +57,9 @@ static bool leaf_reserve(struct worker *w, size_t n)
     free(w->chosen);
     free(w->pack);
     free(w->box);
-    w->chosen = malloc((capacity + BOXES_FAN) * sizeof *w->chosen);
+    w->chosen = malloc((capacity + LEAF) * sizeof *w->chosen);
     w->pack = aligned_alloc(64, capacity * sizeof *w->pack);
-    w->box = aligned_alloc(64, capacity / BOXES_FAN * sizeof *w->box);
+    w->box = aligned_alloc(64, capacity / LEAF * sizeof *w->box);
     w->leaf_capacity = capacity;
     if (!leaf || !w->chosen || !w->pack || !w->box) {
         w->leaf_capacity = 0;
@@ -71,56 +71,41 @@ static bool leaf_reserve(struct worker *w, size_t n)
 
 void worker_fini(struct worker *w)
 {
-    free(w->out);
+    free(w->span);
+    free(w->step);
+    free(w->found);
     free(w->leaf);
     free(w->chosen);
     free(w->pack);
     free(w->box);
-    free(w->bits);
-    free(w->summary);
+    bitset_fini(&w->near);
+    bitset_fini(&w->unsorted);
 }
 
-/* -- Sorting a list by setting bits ------------------------------------------------------------ */
-
-/* Sorts list[0..n) ascending, without repeats; the number that is left. All bits are zero before
- * and after. */
-static size_t sort_unique(struct worker *w, size_t n_source, uint32_t *list, size_t n)
+size_t worker_bytes(const struct worker *w)
 {
-    size_t words = n_source / 64 + 1, first = SIZE_MAX, last = 0, left = 0;
-
-    if (!w->bits) {
-        w->bits = calloc(words, sizeof *w->bits);
-        w->summary = calloc(words / 64 + 1, sizeof *w->summary);
-        if (!w->bits || !w->summary) {
-            w->no_memory = true;
-            return 0;
-        }
-    }
-    for (size_t k = 0; k < n; k++) {
-        size_t word = list[k] / 64, block = word / 64;
-
-        w->bits[word] |= 1ull << list[k] % 64;
-        w->summary[block] |= 1ull << word % 64;
-        first = block < first ? block : first;
-        last = block > last ? block : last;
-    }
-    for (size_t block = first; block <= last && n > 0; block++) {
-        for (uint64_t blocks = w->summary[block]; blocks; blocks &= blocks - 1) {
-            size_t word = block * 64 + (size_t)__builtin_ctzll(blocks);
-
-            for (uint64_t bits = w->bits[word]; bits; bits &= bits - 1) {
-                list[left++] = (uint32_t)(word * 64) + (uint32_t)__builtin_ctzll(bits);
-            }
-            w->bits[word] = 0;
-        }
-        w->summary[block] = 0;
-    }
-    return left;
+    return w->span_capacity * sizeof *w->span + w->step_capacity * sizeof *w->step +
+           w->found_capacity * sizeof *w->found + bitset_bytes(&w->near) +
+           bitset_bytes(&w->unsorted) +
+           w->leaf_capacity * (2 * sizeof *w->leaf + sizeof *w->pack + sizeof *w->box / LEAF);
 }
 
-/* -- Spans ------------------------------------------------------------------------------------- */
+/* Sorts what was found, ascending and without repeats. */
+static void sort_found(const struct job *j, struct worker *w)
+{
+    if (!w->unsorted.bits && !bitset_init(&w->unsorted, j->src->n)) {
+        w->no_memory = true;
+        return;
+    }
+    for (size_t k = 0; k < w->n_found; k++) {
+        bitset_add(&w->unsorted, w->found[k]);
+    }
+    w->n_found = bitset_take(&w->unsorted, w->found);
+}
 
-static void span_init(struct span *s, const struct job *j, size_t first, size_t last)
+/* -- Stretches ------------------------------------------------------------------------------------- */
+
+static void stretch_init(struct stretch *s, const struct job *j, size_t first, size_t last)
 {
     const struct cloud *c = j->dst;
 
@@ -147,7 +132,7 @@ static void span_init(struct span *s, const struct job *j, size_t first, size_t 
 }
 
 /* Half the diagonal of the box. */
-static double span_radius(const struct span *s)
+static double stretch_radius(const struct stretch *s)
 {
     double sum = 0;
 
@@ -160,7 +145,7 @@ static double span_radius(const struct span *s)
 }
 
 /* Makes `both` of two spans that stand side by side. */
-static void span_join(struct span *both, const struct span *s, const struct span *t)
+static void stretch_join(struct stretch *both, const struct stretch *s, const struct stretch *t)
 {
     *both = *s;
     both->last = t->last;
@@ -172,115 +157,56 @@ static void span_join(struct span *both, const struct span *s, const struct span
     }
 }
 
-/* -- The walk ---------------------------------------------------------------------------------- */
+/* -- A stretch's sources ----------------------------------------------------------------------- */
 
-/* Appends the leaves below a block of sisters that are near the query, in order. */
-static void walk(const struct job *j, struct worker *w, const struct query *q, int level,
-                 size_t block)
+static void frame_init(struct frame *f, const struct job *j, const struct stretch *s)
 {
-    unsigned mask = j->filter->near_boxes(&j->tree.level[level][block], q, j->tree.dim);
+    double unit = s->q.reach > 0 ? s->q.reach : j->src->largest;
 
-    if (level == 0 && !leaf_reserve(w, w->n_leaf + BOXES_FAN)) {
-        return;
-    }
-    for (; mask; mask &= mask - 1) {
-        size_t node = block * BOXES_FAN + (size_t)__builtin_ctz(mask);
-
-        if (node >= j->tree.n_node[level]) {
-            return; /* a box without points: a reach beyond measure */
-        }
-        if (level > 0) {
-            walk(j, w, q, level - 1, node);
-        } else {
-            w->leaf[w->n_leaf++] = (uint32_t)node;
-        }
-    }
-}
-
-/* -- Single precision -------------------------------------------------------------------------- */
-
-static void frame_init(struct frame *f, const struct job *j, const struct span *s)
-{
-    double unit = s->q.reach;
-
-    if (!(unit > 0)) {
-        unit = j->tree.level[j->tree.n_level - 1][0].reach[0];
-    }
     f->inverse = unit > 0 ? 1 / unit : 1;
     for (int a = 0; a < 3; a++) {
         f->centre[a] = s->q.lo[a] + (s->q.hi[a] - s->q.lo[a]) / 2;
     }
 }
 
-/* Leaf k of the bundle's pack. */
-static void pack_box(const struct job *j, const struct frame *f, uint32_t leaf,
-                     struct packed_box8 *pack, size_t k)
+/* The leaves near a stretch, ascending. */
+static bool find(const struct job *j, struct worker *w, const struct stretch *s)
 {
-    const struct box8 *from = &j->tree.level[0][leaf / BOXES_FAN];
-    struct packed_box8 *to = &pack[k / BOXES_FAN];
-    size_t q = leaf % BOXES_FAN, p = k % BOXES_FAN;
+    size_t seen;
 
-    for (int a = 0; a < j->tree.dim; a++) {
-        to->lo[a][p] = (float)((from->lo[a][q] - f->centre[a]) * f->inverse);
-        to->hi[a][p] = (float)((from->hi[a][q] - f->centre[a]) * f->inverse);
+    w->n_leaf = 0;
+    if (!w->near.bits && !bitset_init(&w->near, j->src->n_leaf)) {
+        w->no_memory = true;
+        return false;
     }
-    to->reach[p] = (float)(from->reach[q] * f->inverse);
+    seen = j->manager->find(j->search, &s->q, &w->near);
+    w->visited += seen * (s->last - s->first);
+    if (!leaf_reserve(w, seen < j->src->n_leaf ? seen : j->src->n_leaf)) {
+        return false;
+    }
+    w->n_leaf = bitset_take(&w->near, w->leaf);
+    return true;
 }
 
-/* Finds and packs the leaves near a span. */
-static void look(const struct job *j, struct worker *w, const struct span *s, struct frame *f)
+/* Finds and packs the leaves near a stretch. */
+static void look(const struct job *j, struct worker *w, const struct stretch *s, struct frame *f)
 {
-    w->n_leaf = 0;
-    walk(j, w, &s->q, j->tree.n_level - 1, 0);
-    if (w->no_memory) {
-        w->n_leaf = 0;
+    if (!find(j, w, s)) {
         return;
     }
     frame_init(f, j, s);
     for (size_t k = 0; k < w->n_leaf; k++) {
-        j->filter->pack(&w->pack[k], &j->tree, f, w->leaf[k]);
-        pack_box(j, f, w->leaf[k], w->box, k);
+        j->filter->pack(&w->pack[k], &w->box[k / LEAF], k % LEAF, j->src, f, w->leaf[k]);
     }
-    for (size_t k = w->n_leaf; k % BOXES_FAN; k++) {
-        struct packed_box8 *none = &w->box[k / BOXES_FAN];
+    for (size_t k = w->n_leaf; k % LEAF; k++) {
+        struct packed_box8 *none = &w->box[k / LEAF];
 
         for (int a = 0; a < 3; a++) {
-            none->lo[a][k % BOXES_FAN] = INFINITY;
-            none->hi[a][k % BOXES_FAN] = -INFINITY;
+            none->lo[a][k % LEAF] = INFINITY;
+            none->hi[a][k % LEAF] = -INFINITY;
         }
-        none->reach[k % BOXES_FAN] = 0;
+        none->reach[k % LEAF] = 0;
     }
-}
-
-static void lanes_init(struct lanes *t, const struct job *j, const struct frame *f, size_t first,
-                       size_t last)
-{
-    const struct cloud *c = j->dst;
-    float least = INFINITY;
-
-    memset(t, 0, sizeof *t);
-    for (size_t i = 0; i < LANES; i++) {
-        size_t k = first + i < last ? first + i : last - 1;
-        double a2 = 0;
-
-        for (int a = 0; a < c->dim; a++) {
-            double x = (c->x[a][k] - f->centre[a]) * f->inverse;
-            float near = (float)x;
-
-            t->m2a[a][i] = -2 * near;
-            a2 += x * x;
-            t->lo[a] = i == 0 || near < t->lo[a] ? near : t->lo[a];
-            t->hi[a] = i == 0 || near > t->hi[a] ? near : t->hi[a];
-        }
-        t->a2[i] = (float)a2;
-        float reach = (float)(j->scale * c->h[k] * f->inverse);
-
-        t->r2[i] = reach * reach;
-        t->reach = reach > t->reach ? reach : t->reach;
-        least = reach < least ? reach : least;
-    }
-    /* The filter is a third faster with one reach for all, so that a little more is worth it. */
-    t->uniform = t->reach <= UNIFORM * least;
 }
 
 /* Appends the sources that destinations [first, last), at most a group, see of the packed
@@ -294,44 +220,74 @@ static void take(const struct job *j, struct worker *w, const struct frame *f, s
     if (w->n_leaf == 0) {
         return;
     }
-    lanes_init(&t, j, f, first, last);
-    n = j->filter->near_leaves(w->box, w->n_leaf, &t, j->tree.dim, w->chosen);
-    if (!out_reserve(w, BOXES_FAN * (n + 1))) {
+    j->filter->lanes(&t, j->dst, j->scale, f, first, last);
+    n = j->filter->near_leaves(w->box, w->n_leaf, &t, j->src->dim, w->chosen);
+    if (!reserve(w, &w->found, &w->found_capacity, w->n_found + LEAF * n + STEPS_MORE,
+                 sizeof *w->found)) {
         return;
     }
-    found =
-        j->filter->near_points(w->pack, w->leaf, w->chosen, n, &t, j->tree.dim, w->out + w->n_out);
-    for (size_t k = w->n_out; j->tree.order && k < w->n_out + found; k++) {
-        w->out[k] = j->tree.order[w->out[k]];
+    found = j->filter->near_points(w->pack, w->leaf, w->chosen, n, &t, j->src->dim,
+                                   w->found + w->n_found);
+    for (size_t k = w->n_found; j->src->order && k < w->n_found + found; k++) {
+        w->found[k] = j->src->order[w->found[k]];
     }
-    w->n_out += found;
-    w->candidates += n * BOXES_FAN * LANES;
+    w->n_found += found;
+    w->candidates += n * LEAF * LANES;
+}
+
+/* Appends the sources found, which ascend, to the lists: those of a group. */
+static void put(const struct job *j, struct worker *w, size_t group)
+{
+    const uint32_t *found = w->found;
+    size_t n = w->n_found, spans = 0;
+
+    w->n_found = 0;
+    if (w->no_memory ||
+        !reserve(w, &w->step, &w->step_capacity, w->n_step + n + STEPS_MORE, sizeof *w->step)) {
+        return;
+    }
+    for (size_t k = 0, end; k < n; k = end, spans++) {
+        uint32_t base = found[k];
+
+        end = n;
+        if (found[n - 1] - base > UINT16_MAX) {
+            for (end = k + 1; found[end] - base <= UINT16_MAX; end++) {
+            }
+        }
+        if (!reserve(w, &w->span, &w->span_capacity, w->n_span + 1, sizeof *w->span)) {
+            return;
+        }
+        w->span[w->n_span++] = (sph_span){w->n_step, base, (uint32_t)(end - k)};
+        j->filter->steps(w->step + w->n_step, found + k, end - k, base);
+        w->n_step += end - k;
+    }
+    j->count[group] = spans;
 }
 
 /* -- Groups ------------------------------------------------------------------------------------ */
 
-static void group_span(struct span *s, const struct job *j, size_t group)
+static void group_stretch(struct stretch *s, const struct job *j, size_t group)
 {
     size_t first = group * LANES, n = j->dst->n;
 
-    span_init(s, j, first, first + LANES < n ? first + LANES : n);
+    stretch_init(s, j, first, first + LANES < n ? first + LANES : n);
 }
 
 /* A group whose lanes are far apart, piece by piece. */
 static void group_in_pieces(const struct job *j, struct worker *w, size_t group)
 {
-    size_t start = w->n_out, first = group * LANES;
+    size_t first = group * LANES;
     size_t last = first + LANES < j->dst->n ? first + LANES : j->dst->n;
 
     while (first < last) {
-        struct span piece, more, both;
+        struct stretch piece, more, both;
         struct frame f;
 
-        span_init(&piece, j, first, first + 1);
+        stretch_init(&piece, j, first, first + 1);
         for (size_t i = first + 1; i < last; i++) {
-            span_init(&more, j, i, i + 1);
-            span_join(&both, &piece, &more);
-            if (span_radius(&both) > both.least) {
+            stretch_init(&more, j, i, i + 1);
+            stretch_join(&both, &piece, &more);
+            if (stretch_radius(&both) > both.least) {
                 break;
             }
             piece = both;
@@ -340,43 +296,43 @@ static void group_in_pieces(const struct job *j, struct worker *w, size_t group)
         take(j, w, &f, piece.first, piece.last);
         first = piece.last;
     }
-    w->n_out = start + sort_unique(w, j->tree.n, w->out + start, w->n_out - start);
-    j->count[group] = w->n_out - start;
+    sort_found(j, w);
+    put(j, w, group);
 }
 
 /* Groups [first, last), which stand close together. */
-static void bundle(const struct job *j, struct worker *w, const struct span *s, size_t first,
+static void bundle(const struct job *j, struct worker *w, const struct stretch *s, size_t first,
                    size_t last)
 {
     struct frame f;
 
     look(j, w, s, &f);
     for (size_t group = first; group < last; group++) {
-        size_t start = w->n_out, begin = group * LANES, end = begin + LANES;
+        size_t begin = group * LANES, end = begin + LANES;
 
         take(j, w, &f, begin, end < j->dst->n ? end : j->dst->n);
-        if (j->tree.order) {
-            w->n_out = start + sort_unique(w, j->tree.n, w->out + start, w->n_out - start);
+        if (j->src->order) {
+            sort_found(j, w);
         }
-        j->count[group] = w->n_out - start;
+        put(j, w, group);
     }
 }
 
 void worker_make(const struct job *j, struct worker *w, size_t first, size_t last)
 {
-    struct span s, next, both;
+    struct stretch s, next, both;
 
-    group_span(&next, j, first);
+    group_stretch(&next, j, first);
     for (size_t group = first; group < last && !w->no_memory;) {
         size_t end = group + 1;
-        bool whole = span_radius(&next) <= SPREAD_MOST * next.least;
+        bool whole = stretch_radius(&next) <= SPREAD_MOST * next.least;
 
         s = next;
         for (; end < last; end++) {
-            group_span(&next, j, end);
-            span_join(&both, &s, &next);
+            group_stretch(&next, j, end);
+            stretch_join(&both, &s, &next);
             if (!whole || end - group == BUNDLE_MOST ||
-                span_radius(&both) > BUNDLE_SPREAD * both.least) {
+                stretch_radius(&both) > BUNDLE_SPREAD * both.least) {
                 break;
             }
             s = both;

@@ -3,29 +3,34 @@
 #ifndef NEIGHBOURS_WORKER_H
 #define NEIGHBOURS_WORKER_H
 
-#include "neighbours/filter.h"
+#include "neighbours/manager.h"
 
-#define LANES 8 /* destinations in a group */
+#define LANES LEAF /* destinations in a group */
 
 /* What all threads share. */
 struct job {
     const struct cloud *dst;
+    const struct sources *src;
     const struct filter *filter;
-    struct boxes tree;
-    double scale;    /* of the destinations' reach, skin and slack included */
-    uint64_t *count; /* [n_group]: sources of each group */
+    const struct manager_calls *manager;
+    const void *search; /* the manager's */
+    double scale;       /* of the destinations' reach, skin and slack included */
+    uint64_t *count;    /* [n_group]: spans of each group */
 };
 
 /* What one thread owns. */
 struct worker {
-    uint32_t *out; /* lists of its chunks, one after the other */
-    size_t n_out, out_capacity;
+    sph_span *span; /* lists of its chunks, one after the other */
+    uint16_t *step;
+    size_t n_span, span_capacity, n_step, step_capacity;
+    uint32_t *found; /* sources of the group at hand */
+    size_t n_found, found_capacity;
     uint32_t *leaf, *chosen; /* of the bundle at hand; of the group */
     struct packed_leaf *pack;
     struct packed_box8 *box;
     size_t n_leaf, leaf_capacity;
-    uint64_t *bits, *summary; /* a bit a source; a bit a word of bits */
-    uint64_t candidates;
+    struct bitset near, unsorted; /* leaves near a query; sources of a group */
+    uint64_t visited, candidates;
     bool no_memory;
     char apart[64]; /* from the next one's cache lines */
 };
@@ -34,5 +39,6 @@ struct worker {
  * comes out depends on nothing but the job and the groups. Sets w->no_memory if it could not. */
 void worker_make(const struct job *j, struct worker *w, size_t first, size_t last);
 void worker_fini(struct worker *w);
+size_t worker_bytes(const struct worker *w);
 
 #endif

@@ -38,14 +38,13 @@ static double pair_reach(const struct cloud *d, size_t i, const struct cloud *s,
 static void check_group(const struct group_list *l, size_t g, const struct cloud *d,
                         const struct cloud *s, bool symmetric, double skin)
 {
-    size_t q = l->begin[g], last = g * GROUP + GROUP < d->n ? g * GROUP + GROUP : d->n;
+    struct source_walk w = source_walk_begin(l, g);
+    size_t last = g * GROUP + GROUP < d->n ? g * GROUP + GROUP : d->n;
+    bool more = source_walk_next(l, &w);
 
-    for (size_t k = q; k + 1 < l->begin[g + 1]; k++) {
-        assert_true(l->source[k] < l->source[k + 1]);
-    }
     for (size_t j = 0; j < s->n; j++) {
         bool needed = false, allowed = false;
-        bool listed = q < l->begin[g + 1] && l->source[q] == j;
+        bool listed = more && w.source == j;
 
         for (size_t i = g * GROUP; i < last; i++) {
             double reach = pair_reach(d, i, s, j, symmetric) * (1 + skin);
@@ -58,28 +57,82 @@ static void check_group(const struct group_list *l, size_t g, const struct cloud
         if (needed != listed && (needed || !allowed)) {
             fail_msg("group %zu, source %zu: %s", g, j, listed ? "listed" : "missing");
         }
-        q += listed;
+        more = listed ? source_walk_next(l, &w) : more;
     }
-    assert_int_equal(q, l->begin[g + 1]); /* no index beyond the sources */
+    assert_false(more); /* all ascend, and none is beyond the sources */
+}
+
+/* Steps follow each other, and no span could have been longer. */
+static void check_spans(const struct group_list *l)
+{
+    uint64_t entries = 0;
+
+    assert_int_equal(l->begin[l->n_group], l->n_span);
+    for (size_t g = 0; g < l->n_group; g++) {
+        uint64_t before = entries;
+
+        for (uint64_t s = l->begin[g]; s < l->begin[g + 1]; s++) {
+            assert_int_equal(l->span[s].first, entries);
+            assert_true(l->span[s].count > 0);
+            assert_int_equal(l->step[entries], 0);
+            assert_true(s == l->begin[g] || l->span[s].base - l->span[s - 1].base > UINT16_MAX);
+            entries += l->span[s].count;
+        }
+        assert_int_equal(group_list_entries(l, g, g + 1), entries - before);
+    }
+    assert_int_equal(l->n_entry, entries);
+    assert_int_equal(group_list_entries(l, 0, l->n_group), entries);
+}
+
+static void same_lists(const struct group_list *a, const struct group_list *b)
+{
+    assert_int_equal(a->n_group, b->n_group);
+    assert_int_equal(a->n_span, b->n_span);
+    assert_int_equal(a->n_entry, b->n_entry);
+    assert_memory_equal(a->begin, b->begin, (a->n_group + 1) * sizeof *a->begin);
+    assert_memory_equal(a->span, b->span, a->n_span * sizeof *a->span);
+    assert_memory_equal(a->step, b->step, a->n_entry * sizeof *a->step);
+}
+
+/* Every manager gives this list. */
+static void check_managers(const struct group_list *l, const struct cloud *d, const struct cloud *s,
+                           double skin, const struct filter *filter)
+{
+    const struct neighbour_manager *manager;
+
+    for (size_t k = 1; (manager = neighbour_manager_at(k)) != NULL; k++) {
+        struct group_list other = {0};
+        struct error e;
+
+        assert_int_equal(filter_make(&other, d, s, l->symmetric, skin, manager, 1, filter, &e), 0);
+        same_lists(l, &other);
+        assert_true(other.visited > 0 || other.n_entry == 0);
+        group_list_fini(&other);
+    }
 }
 
 static void check_with(const struct cloud *d, const struct cloud *s, const struct filter *filter)
 {
     static const double skins[2] = {0, 0.1};
+    const struct neighbour_manager *manager = neighbour_manager_at(0);
     struct group_list l = {0};
     struct error e;
 
     for (int k = 0; k < 4; k++) {
         bool symmetric = k / 2 > 0;
+        double skin = skins[k % 2];
 
-        assert_int_equal(filter_make(&l, d, s, symmetric, skins[k % 2], 1, filter, &e), 0);
+        assert_int_equal(filter_make(&l, d, s, symmetric, skin, manager, 1, filter, &e), 0);
         assert_int_equal(l.n_group, (d->n + GROUP - 1) / GROUP);
         assert_int_equal(l.symmetric, symmetric);
         assert_int_equal(l.begin[0], 0);
         for (size_t g = 0; g < l.n_group; g++) {
-            check_group(&l, g, d, s, symmetric, skins[k % 2]);
+            check_group(&l, g, d, s, symmetric, skin);
         }
-        assert_true(group_list_bytes(&l) >= 8 * (l.n_group + 1) + 4 * l.begin[l.n_group]);
+        check_spans(&l);
+        assert_true(group_list_bytes(&l) >=
+                    8 * (l.n_group + 1) + sizeof *l.span * l.n_span + 2 * l.n_entry);
+        check_managers(&l, d, s, skin, filter);
     }
     group_list_fini(&l);
 }
@@ -194,16 +247,39 @@ static void gather_needs_no_source_h(void **state)
 
     (void)state;
     bare.h = NULL;
-    assert_int_equal(group_list_make(&with, &d.c, &s.c, false, 0.1, 1, &e), 0);
-    assert_int_equal(group_list_make(&without, &d.c, &bare, false, 0.1, 1, &e), 0);
-    assert_int_equal(with.begin[with.n_group], without.begin[without.n_group]);
-    assert_true(with.begin[with.n_group] > 0);
-    assert_memory_equal(with.source, without.source, 4 * with.begin[with.n_group]);
-    assert_int_equal(group_list_make(&without, &d.c, &bare, true, 0.1, 1, &e), -1);
+    assert_int_equal(group_list_make(&with, &d.c, &s.c, false, 0.1, NULL, 1, &e), 0);
+    assert_int_equal(group_list_make(&without, &d.c, &bare, false, 0.1, NULL, 1, &e), 0);
+    assert_true(with.n_entry > 0);
+    same_lists(&with, &without);
+    assert_int_equal(group_list_make(&without, &d.c, &bare, true, 0.1, NULL, 1, &e), -1);
     group_list_fini(&with);
     group_list_fini(&without);
     cloud_free(&d);
     cloud_free(&s);
+}
+
+/* Sources that stand further apart than a step goes: several spans a group. */
+static void many_sources(void **state)
+{
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++) {
+        struct owned d = cloud_even(dim, 61, 31), s = cloud_even(dim, 200000, 32);
+        struct group_list l = {0};
+        struct error e;
+
+        for (size_t i = 0; i < d.c.n; i++) {
+            d.h[i] = even_h(dim, s.c.n, 20 + (double)i);
+        }
+        assert_int_equal(group_list_make(&l, &d.c, &s.c, true, 0.1, NULL, 1, &e), 0);
+        check_spans(&l);
+        assert_true(l.n_span > 2 * l.n_group);
+        for (size_t g = 0; g < l.n_group; g++) {
+            check_group(&l, g, &d.c, &s.c, true, 0.1);
+        }
+        group_list_fini(&l);
+        cloud_free(&d);
+        cloud_free(&s);
+    }
 }
 
 static void empty_clouds(void **state)
@@ -213,14 +289,14 @@ static void empty_clouds(void **state)
     struct error e;
 
     (void)state;
-    assert_int_equal(group_list_make(&l, &some.c, &some.c, true, 0, 2, &e), 0);
+    assert_int_equal(group_list_make(&l, &some.c, &some.c, true, 0, NULL, 2, &e), 0);
     assert_true(l.begin[3] > 0);
-    assert_int_equal(group_list_make(&l, &some.c, &none.c, true, 0, 2, &e), 0);
+    assert_int_equal(group_list_make(&l, &some.c, &none.c, true, 0, NULL, 2, &e), 0);
     assert_int_equal(l.n_group, 3);
     for (size_t g = 0; g <= 3; g++) {
         assert_int_equal(l.begin[g], 0);
     }
-    assert_int_equal(group_list_make(&l, &none.c, &some.c, true, 0, 2, &e), 0);
+    assert_int_equal(group_list_make(&l, &none.c, &some.c, true, 0, NULL, 2, &e), 0);
     assert_int_equal(l.n_group, 0);
     assert_int_equal(l.begin[0], 0);
     group_list_fini(&l);
@@ -264,7 +340,7 @@ static void outliers(void **state)
         check(&o.c, &o.c);
         cloud_sort(&o, 0.1);
         check(&o.c, &o.c);
-        assert_int_equal(group_list_make(&l, &o.c, &o.c, true, 0.1, 1, &e), 0);
+        assert_int_equal(group_list_make(&l, &o.c, &o.c, true, 0.1, NULL, 1, &e), 0);
         assert_true(group_list_bytes(&l) < 1000000);
         group_list_fini(&l);
         for (size_t i = 0; i < o.c.n; i++) {
@@ -339,10 +415,11 @@ static void periodic_clouds(void **state)
             s.x[a] = particles_real(&p, "x", (uint32_t)a);
         }
         check(&d, &s);
-        assert_int_equal(group_list_make(&l, &d, &s, true, 0.1, 1, &e), 0);
+        assert_int_equal(group_list_make(&l, &d, &s, true, 0.1, NULL, 1, &e), 0);
         for (size_t i = 0; i < d.n; i++) {
-            for (size_t q = l.begin[i / GROUP]; q < l.begin[i / GROUP + 1]; q++) {
-                listed += square(&d, i, &s, l.source[q]) < reach * reach;
+            for (struct source_walk w = source_walk_begin(&l, i / GROUP);
+                 source_walk_next(&l, &w);) {
+                listed += square(&d, i, &s, w.source) < reach * reach;
             }
             for (size_t j = 0; j < d.n; j++) {
                 double sum = 0;
@@ -365,14 +442,6 @@ static void periodic_clouds(void **state)
     }
 }
 
-static void same_lists(const struct group_list *a, const struct group_list *b)
-{
-    assert_int_equal(a->n_group, b->n_group);
-    assert_memory_equal(a->begin, b->begin, (a->n_group + 1) * sizeof *a->begin);
-    assert_memory_equal(a->source, b->source, a->begin[a->n_group] * sizeof *a->source);
-    assert_int_equal(a->candidates, b->candidates);
-}
-
 /* Many chunks; sorted, and in the tree's own order; a list that is used again. */
 static void threads_make_no_difference(void **state)
 {
@@ -385,13 +454,14 @@ static void threads_make_no_difference(void **state)
         if (k / 2) {
             cloud_sort(&o, 4 * o.h[0]);
         }
-        assert_int_equal(group_list_make(&one, &o.c, &o.c, true, 0.1, 1, &e), 0);
+        assert_int_equal(group_list_make(&one, &o.c, &o.c, true, 0.1, NULL, 1, &e), 0);
         assert_true(one.begin[one.n_group] > 0);
         for (int threads = 2; threads <= 4; threads++) {
-            assert_int_equal(group_list_make(&more, &o.c, &o.c, true, 0.1, threads, &e), 0);
+            assert_int_equal(group_list_make(&more, &o.c, &o.c, true, 0.1, NULL, threads, &e), 0);
             same_lists(&one, &more);
+            assert_int_equal(one.candidates, more.candidates);
         }
-        assert_int_equal(group_list_make(&more, &o.c, &o.c, true, 0.1, 1, &e), 0);
+        assert_int_equal(group_list_make(&more, &o.c, &o.c, true, 0.1, NULL, 1, &e), 0);
         same_lists(&one, &more);
         for (size_t g = 0; g < one.n_group; g += 401) {
             check_group(&one, g, &o.c, &o.c, true, 0.1);
@@ -413,8 +483,8 @@ static void work_is_bounded(void **state)
         uint64_t pairs;
 
         cloud_sort(&o, 2 * even_h(3, 40000, 20));
-        assert_int_equal(group_list_make(&l, &o.c, &o.c, false, 0, 1, &e), 0);
-        pairs = GROUP * l.begin[l.n_group];
+        assert_int_equal(group_list_make(&l, &o.c, &o.c, false, 0, NULL, 1, &e), 0);
+        pairs = GROUP * l.n_entry;
         assert_true(l.candidates < 10 * pairs);
         /* Unsorted, the groups are bad, but the search is still local. */
         uint64_t seed = 5;
@@ -429,8 +499,8 @@ static void work_is_bounded(void **state)
                 x[j] = t;
             }
         }
-        assert_int_equal(group_list_make(&l, &o.c, &o.c, false, 0, 1, &e), 0);
-        pairs = GROUP * l.begin[l.n_group];
+        assert_int_equal(group_list_make(&l, &o.c, &o.c, false, 0, NULL, 1, &e), 0);
+        pairs = GROUP * l.n_entry;
         assert_true(l.candidates < 12 * pairs);
         group_list_fini(&l);
         cloud_free(&o);
@@ -451,27 +521,27 @@ static void refuses(void **state)
         double old = o.x[1][37];
 
         o.x[1][37] = bad[k];
-        assert_int_equal(group_list_make(&l, &o.c, &o.c, true, 0.1, 1, &e), -1);
+        assert_int_equal(group_list_make(&l, &o.c, &o.c, true, 0.1, NULL, 1, &e), -1);
         assert_non_null(strstr(e.text, "particle 37"));
         assert_int_equal(e.exit_code, EXIT_RUN);
-        assert_int_equal(group_list_make(&l, &good.c, &o.c, true, 0.1, 1, &e), -1);
+        assert_int_equal(group_list_make(&l, &good.c, &o.c, true, 0.1, NULL, 1, &e), -1);
         assert_non_null(strstr(e.text, "source particle 37"));
-        assert_int_equal(group_list_make(&l, &o.c, &good.c, true, 0.1, 1, &e), -1);
+        assert_int_equal(group_list_make(&l, &o.c, &good.c, true, 0.1, NULL, 1, &e), -1);
         assert_non_null(strstr(e.text, "destination particle 37"));
         assert_int_equal(cell_order(&o.c, NULL, 0.1, order, &e), -1);
         assert_non_null(strstr(e.text, "particle 37"));
         o.x[1][37] = old;
         old = o.h[99];
         o.h[99] = k == 2 ? -1e-9 : bad[k];
-        assert_int_equal(group_list_make(&l, &o.c, &o.c, true, 0.1, 1, &e), -1);
+        assert_int_equal(group_list_make(&l, &o.c, &o.c, true, 0.1, NULL, 1, &e), -1);
         assert_non_null(strstr(e.text, "particle 99"));
         o.h[99] = old;
     }
-    assert_int_equal(group_list_make(&l, &o.c, &other.c, true, 0.1, 1, &e), -1);
-    assert_int_equal(group_list_make(&l, &o.c, &o.c, true, -0.1, 1, &e), -1);
-    assert_int_equal(group_list_make(&l, &o.c, &o.c, true, NAN, 1, &e), -1);
+    assert_int_equal(group_list_make(&l, &o.c, &other.c, true, 0.1, NULL, 1, &e), -1);
+    assert_int_equal(group_list_make(&l, &o.c, &o.c, true, -0.1, NULL, 1, &e), -1);
+    assert_int_equal(group_list_make(&l, &o.c, &o.c, true, NAN, NULL, 1, &e), -1);
     /* And still works. */
-    assert_int_equal(group_list_make(&l, &o.c, &o.c, true, 0.1, 1, &e), 0);
+    assert_int_equal(group_list_make(&l, &o.c, &o.c, true, 0.1, NULL, 1, &e), 0);
     group_list_fini(&l);
     cloud_free(&o);
     cloud_free(&other);
@@ -481,21 +551,14 @@ static void refuses(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(few_points),
-        cmocka_unit_test(even_clouds),
-        cmocka_unit_test(clustered_clouds),
-        cmocka_unit_test(wild_reaches),
-        cmocka_unit_test(two_clouds),
-        cmocka_unit_test(gather_needs_no_source_h),
-        cmocka_unit_test(empty_clouds),
-        cmocka_unit_test(coincident_points),
-        cmocka_unit_test(outliers),
-        cmocka_unit_test(any_unit_of_length),
-        cmocka_unit_test(all_pairs),
-        cmocka_unit_test(periodic_clouds),
-        cmocka_unit_test(threads_make_no_difference),
-        cmocka_unit_test(work_is_bounded),
-        cmocka_unit_test(refuses),
+        cmocka_unit_test(few_points),         cmocka_unit_test(even_clouds),
+        cmocka_unit_test(clustered_clouds),   cmocka_unit_test(wild_reaches),
+        cmocka_unit_test(two_clouds),         cmocka_unit_test(gather_needs_no_source_h),
+        cmocka_unit_test(many_sources),       cmocka_unit_test(empty_clouds),
+        cmocka_unit_test(coincident_points),  cmocka_unit_test(outliers),
+        cmocka_unit_test(any_unit_of_length), cmocka_unit_test(all_pairs),
+        cmocka_unit_test(periodic_clouds),    cmocka_unit_test(threads_make_no_difference),
+        cmocka_unit_test(work_is_bounded),    cmocka_unit_test(refuses),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

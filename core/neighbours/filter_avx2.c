@@ -1,0 +1,301 @@
+/* neighbours/filter_avx2.c -- the neighbour search's inner loops for AVX2 and FMA. Pure. */
+#include "neighbours/filter.h"
+
+#include <math.h>
+
+#if defined(__x86_64__) && defined(__GNUC__)
+#include <immintrin.h>
+
+#define AVX2 __attribute__((target("avx2,fma")))
+#define AVX2_INLINE static inline __attribute__((always_inline, target("avx2,fma")))
+
+AVX2_INLINE unsigned avx2_near_four(const struct box8 *b, int k, const struct query *q, int dim)
+{
+    __m256d gap = _mm256_setzero_pd(), zero = gap, reach;
+
+    for (int a = 0; a < dim; a++) {
+        __m256d below = _mm256_sub_pd(_mm256_load_pd(&b->lo[a][k]), _mm256_set1_pd(q->hi[a]));
+        __m256d above = _mm256_sub_pd(_mm256_set1_pd(q->lo[a]), _mm256_load_pd(&b->hi[a][k]));
+        __m256d d = _mm256_max_pd(_mm256_max_pd(below, above), zero);
+
+        gap = _mm256_fmadd_pd(d, d, gap);
+    }
+    reach = _mm256_max_pd(_mm256_load_pd(&b->reach[k]), _mm256_set1_pd(q->reach));
+    reach = _mm256_mul_pd(reach, _mm256_set1_pd(1 + MARGIN));
+    return (unsigned)_mm256_movemask_pd(
+        _mm256_cmp_pd(gap, _mm256_mul_pd(reach, reach), _CMP_LE_OQ));
+}
+
+AVX2 static unsigned avx2_near_boxes(const struct box8 *b, const struct query *q, int dim)
+{
+    if (dim == 3) {
+        return avx2_near_four(b, 0, q, 3) | avx2_near_four(b, 4, q, 3) << 4;
+    }
+    if (dim == 2) {
+        return avx2_near_four(b, 0, q, 2) | avx2_near_four(b, 4, q, 2) << 4;
+    }
+    return avx2_near_four(b, 0, q, 1) | avx2_near_four(b, 4, q, 1) << 4;
+}
+
+/* Eight doubles, moved and scaled, as floats. */
+AVX2_INLINE __m256 avx2_float(const double *x, double centre, double inverse)
+{
+    __m256d c = _mm256_set1_pd(centre), f = _mm256_set1_pd(inverse);
+    __m128 low = _mm256_cvtpd_ps(_mm256_mul_pd(_mm256_sub_pd(_mm256_loadu_pd(x), c), f));
+    __m128 high = _mm256_cvtpd_ps(_mm256_mul_pd(_mm256_sub_pd(_mm256_loadu_pd(x + 4), c), f));
+
+    return _mm256_insertf128_ps(_mm256_castps128_ps256(low), high, 1);
+}
+
+AVX2_INLINE float avx2_least(__m256 x)
+{
+    __m128 m = _mm_min_ps(_mm256_castps256_ps128(x), _mm256_extractf128_ps(x, 1));
+
+    m = _mm_min_ps(m, _mm_movehl_ps(m, m));
+    return _mm_cvtss_f32(_mm_min_ss(m, _mm_movehdup_ps(m)));
+}
+
+AVX2_INLINE float avx2_most(__m256 x)
+{
+    __m128 m = _mm_max_ps(_mm256_castps256_ps128(x), _mm256_extractf128_ps(x, 1));
+
+    m = _mm_max_ps(m, _mm_movehl_ps(m, m));
+    return _mm_cvtss_f32(_mm_max_ss(m, _mm_movehdup_ps(m)));
+}
+
+AVX2 static void avx2_pack(struct packed_leaf *p, struct packed_box8 *box, size_t k,
+                           const struct sources *s, const struct frame *f, uint32_t leaf)
+{
+    size_t first = (size_t)leaf * LEAF, last = first + LEAF < s->n ? first + LEAF : s->n;
+    __m256 s2 = _mm256_setzero_ps(), r2 = s2, far = _mm256_set1_ps((float)FILTER_FAR);
+    double room[LEAF];
+
+    for (int a = 0; a < s->dim; a++) {
+        const double *from = filter_eight(s->x[a], first, last, room);
+        __m256 x = avx2_float(from, f->centre[a], f->inverse);
+
+        x = _mm256_max_ps(_mm256_min_ps(x, far), _mm256_sub_ps(_mm256_setzero_ps(), far));
+        _mm256_store_ps(p->x[a], x);
+        s2 = _mm256_fmadd_ps(x, x, s2);
+        box->lo[a][k] = avx2_least(x);
+        box->hi[a][k] = avx2_most(x);
+    }
+    box->reach[k] = 0;
+    if (s->scale > 0) {
+        const double *h = filter_eight(s->h, first, last, room);
+        __m256 reach = avx2_float(h, 0, f->inverse * s->scale);
+
+        r2 = _mm256_mul_ps(reach, reach);
+        box->reach[k] = avx2_most(reach);
+    }
+    _mm256_store_ps(p->s, s2);
+    _mm256_store_ps(p->r2, r2);
+    for (size_t i = last - first; i < LEAF; i++) {
+        p->s[i] = INFINITY;
+    }
+}
+
+AVX2 static void avx2_lanes(struct lanes *t, const struct cloud *c, double scale,
+                            const struct frame *f, size_t first, size_t last)
+{
+    double room[LEAF];
+    __m256d low = _mm256_setzero_pd(), high = low, inverse = _mm256_set1_pd(f->inverse);
+    __m256 reach = avx2_float(filter_eight(c->h, first, last, room), 0, scale * f->inverse);
+
+    for (int a = 0; a < c->dim; a++) {
+        const double *from = filter_eight(c->x[a], first, last, room);
+        __m256d centre = _mm256_set1_pd(f->centre[a]);
+        __m256d x = _mm256_mul_pd(_mm256_sub_pd(_mm256_loadu_pd(from), centre), inverse);
+        __m256d y = _mm256_mul_pd(_mm256_sub_pd(_mm256_loadu_pd(from + 4), centre), inverse);
+        __m256 near =
+            _mm256_insertf128_ps(_mm256_castps128_ps256(_mm256_cvtpd_ps(x)), _mm256_cvtpd_ps(y), 1);
+
+        low = _mm256_fmadd_pd(x, x, low);
+        high = _mm256_fmadd_pd(y, y, high);
+        _mm256_storeu_ps(t->m2a[a], _mm256_mul_ps(near, _mm256_set1_ps(-2)));
+        t->lo[a] = avx2_least(near);
+        t->hi[a] = avx2_most(near);
+    }
+    _mm256_storeu_ps(t->a2, _mm256_insertf128_ps(_mm256_castps128_ps256(_mm256_cvtpd_ps(low)),
+                                                 _mm256_cvtpd_ps(high), 1));
+    _mm256_storeu_ps(t->r2, _mm256_mul_ps(reach, reach));
+    t->reach = avx2_most(reach);
+    t->uniform = t->reach <= UNIFORM * avx2_least(reach);
+}
+
+/* For every byte the numbers of its set bits, lowest first, a byte each. */
+#define BIT(m, b) ((uint64_t)((m) >> (b)&1))
+#define BELOW(m, b)                                                                                \
+    (((b) > 0) * BIT(m, 0) + ((b) > 1) * BIT(m, 1) + ((b) > 2) * BIT(m, 2) +                       \
+     ((b) > 3) * BIT(m, 3) + ((b) > 4) * BIT(m, 4) + ((b) > 5) * BIT(m, 5) +                       \
+     ((b) > 6) * BIT(m, 6))
+#define PUT(m, b) (BIT(m, b) * (b) << 8 * BELOW(m, b))
+#define SET1(m)                                                                                    \
+    PUT(m, 0) | PUT(m, 1) | PUT(m, 2) | PUT(m, 3) | PUT(m, 4) | PUT(m, 5) | PUT(m, 6) | PUT(m, 7)
+#define SET4(m) SET1(m), SET1((m) + 1), SET1((m) + 2), SET1((m) + 3)
+#define SET16(m) SET4(m), SET4((m) + 4), SET4((m) + 8), SET4((m) + 12)
+#define SET64(m) SET16(m), SET16((m) + 16), SET16((m) + 32), SET16((m) + 48)
+static const uint64_t set_bits[256] = {SET64(0), SET64(64), SET64(128), SET64(192)};
+
+/* Writes base + k for every set bit k of the mask (and rubbish up to 8 places on). */
+AVX2_INLINE size_t avx2_put(uint32_t *out, uint32_t base, unsigned mask)
+{
+    __m256i k =
+        _mm256_cvtepu8_epi32(_mm_loadl_epi64((const __m128i *)(const void *)&set_bits[mask]));
+
+    _mm256_storeu_si256((__m256i *)(void *)out, _mm256_add_epi32(k, _mm256_set1_epi32((int)base)));
+    return (size_t)__builtin_popcount(mask);
+}
+
+AVX2_INLINE size_t avx2_leaves(const struct packed_box8 *boxes, size_t n, const struct lanes *t,
+                               int dim, uint32_t *out)
+{
+    __m256 zero = _mm256_setzero_ps(), own = _mm256_set1_ps(t->reach);
+    __m256 margin = _mm256_set1_ps(1 + (float)MARGIN);
+    size_t found = 0;
+
+    for (size_t q = 0; q < n; q += LEAF) {
+        const struct packed_box8 *b = &boxes[q / LEAF];
+        __m256 gap = zero, reach = _mm256_max_ps(_mm256_load_ps(b->reach), own);
+
+        for (int a = 0; a < dim; a++) {
+            __m256 below = _mm256_sub_ps(_mm256_load_ps(b->lo[a]), _mm256_set1_ps(t->hi[a]));
+            __m256 above = _mm256_sub_ps(_mm256_set1_ps(t->lo[a]), _mm256_load_ps(b->hi[a]));
+            __m256 d = _mm256_max_ps(_mm256_max_ps(below, above), zero);
+
+            gap = _mm256_fmadd_ps(d, d, gap);
+        }
+        reach = _mm256_mul_ps(reach, margin);
+        reach = _mm256_mul_ps(reach, reach);
+        found += avx2_put(out + found, (uint32_t)q,
+                          (unsigned)_mm256_movemask_ps(_mm256_cmp_ps(gap, reach, _CMP_LE_OQ)));
+    }
+    return found;
+}
+
+AVX2 static size_t avx2_near_leaves(const struct packed_box8 *boxes, size_t n,
+                                    const struct lanes *t, int dim, uint32_t *out)
+{
+    if (dim == 3) {
+        return avx2_leaves(boxes, n, t, 3, out);
+    }
+    return dim == 2 ? avx2_leaves(boxes, n, t, 2, out) : avx2_leaves(boxes, n, t, 1, out);
+}
+
+AVX2_INLINE unsigned avx2_verdict(const struct packed_leaf *p, const struct lanes *t, int uniform,
+                                  __m256 any, __m256 own)
+{
+    __m256 s = _mm256_load_ps(p->s), r2 = _mm256_load_ps(p->r2), hit;
+
+    if (uniform) {
+        r2 = _mm256_max_ps(r2, _mm256_set1_ps(t->reach * t->reach));
+        hit = _mm256_cmp_ps(any, _mm256_sub_ps(r2, s), _CMP_LE_OQ);
+    } else {
+        hit = _mm256_or_ps(_mm256_cmp_ps(any, _mm256_sub_ps(r2, s), _CMP_LE_OQ),
+                           _mm256_cmp_ps(own, _mm256_sub_ps(_mm256_setzero_ps(), s), _CMP_LE_OQ));
+    }
+    return (unsigned)_mm256_movemask_ps(hit);
+}
+
+/* Two leaves at a time, for they share what is loaded of the lanes. */
+AVX2_INLINE void avx2_two(const struct packed_leaf *p, const struct packed_leaf *q,
+                          const struct lanes *t, int dim, int uniform, unsigned *mask)
+{
+    __m256 any0 = _mm256_set1_ps(3e38f), any1 = any0, own0 = any0, own1 = any0;
+
+#pragma GCC unroll 8
+    for (int i = 0; i < 8; i++) {
+        __m256 d0 = _mm256_broadcast_ss(&t->a2[i]), d1 = d0;
+
+#pragma GCC unroll 3
+        for (int a = 0; a < dim; a++) {
+            __m256 m2a = _mm256_broadcast_ss(&t->m2a[a][i]);
+
+            d0 = _mm256_fmadd_ps(m2a, _mm256_load_ps(p->x[a]), d0);
+            d1 = _mm256_fmadd_ps(m2a, _mm256_load_ps(q->x[a]), d1);
+        }
+        any0 = _mm256_min_ps(d0, any0);
+        any1 = _mm256_min_ps(d1, any1);
+        if (!uniform) {
+            __m256 r2 = _mm256_broadcast_ss(&t->r2[i]);
+
+            own0 = _mm256_min_ps(_mm256_sub_ps(d0, r2), own0);
+            own1 = _mm256_min_ps(_mm256_sub_ps(d1, r2), own1);
+        }
+    }
+    mask[0] = avx2_verdict(p, t, uniform, any0, own0);
+    mask[1] = avx2_verdict(q, t, uniform, any1, own1);
+}
+
+AVX2_INLINE size_t avx2_points(const struct packed_leaf *pack, const uint32_t *leaf,
+                               const uint32_t *chosen, size_t n, const struct lanes *t, int dim,
+                               int uniform, uint32_t *out)
+{
+    size_t found = 0;
+    unsigned mask[2];
+
+    for (size_t q = 0; q + 1 < n; q += 2) {
+        uint32_t a = chosen[q], b = chosen[q + 1];
+
+        avx2_two(&pack[a], &pack[b], t, dim, uniform, mask);
+        found += avx2_put(out + found, leaf[a] * LEAF, mask[0]);
+        found += avx2_put(out + found, leaf[b] * LEAF, mask[1]);
+    }
+    if (n % 2) {
+        uint32_t a = chosen[n - 1];
+
+        avx2_two(&pack[a], &pack[a], t, dim, uniform, mask);
+        found += avx2_put(out + found, leaf[a] * LEAF, mask[0]);
+    }
+    return found;
+}
+
+AVX2 static size_t avx2_near_points(const struct packed_leaf *pack, const uint32_t *leaf,
+                                    const uint32_t *chosen, size_t n, const struct lanes *t,
+                                    int dim, uint32_t *out)
+{
+    switch (2 * dim + (t->uniform != 0)) {
+    case 2:
+        return avx2_points(pack, leaf, chosen, n, t, 1, 0, out);
+    case 3:
+        return avx2_points(pack, leaf, chosen, n, t, 1, 1, out);
+    case 4:
+        return avx2_points(pack, leaf, chosen, n, t, 2, 0, out);
+    case 5:
+        return avx2_points(pack, leaf, chosen, n, t, 2, 1, out);
+    case 6:
+        return avx2_points(pack, leaf, chosen, n, t, 3, 0, out);
+    default:
+        return avx2_points(pack, leaf, chosen, n, t, 3, 1, out);
+    }
+}
+
+AVX2 static void avx2_steps(uint16_t *out, const uint32_t *found, size_t n, uint32_t base)
+{
+    __m256i b = _mm256_set1_epi32((int)base);
+
+    for (size_t k = 0; k < n; k += 16) {
+        const __m256i *from = (const __m256i *)(const void *)(found + k);
+        __m256i low = _mm256_sub_epi32(_mm256_loadu_si256(from), b);
+        __m256i high = _mm256_sub_epi32(_mm256_loadu_si256(from + 1), b);
+        __m256i both = _mm256_packus_epi32(low, high); /* a half from each, in turns */
+
+        _mm256_storeu_si256((__m256i *)(void *)(out + k), _mm256_permute4x64_epi64(both, 0xd8));
+    }
+}
+
+static const struct filter avx2 = {avx2_near_boxes,  avx2_pack,        avx2_lanes,
+                                   avx2_near_leaves, avx2_near_points, avx2_steps};
+
+const struct filter *filter_avx2(void)
+{
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? &avx2 : NULL;
+}
+
+#else
+
+const struct filter *filter_avx2(void)
+{
+    return NULL;
+}
+#endif

@@ -163,10 +163,6 @@ SPH_INLINE R SPH_OF_ISA(sph_min_)(R a, R b)
 {
     return SPH_MM(min)(SPH_V(a), SPH_V(b));
 }
-SPH_INLINE R SPH_OF_ISA(sph_sqrt_)(R a)
-{
-    return SPH_MM(sqrt)(SPH_V(a));
-}
 #else
 SPH_INLINE R SPH_OF_ISA(sph_max_)(R a, R b)
 {
@@ -175,13 +171,6 @@ SPH_INLINE R SPH_OF_ISA(sph_max_)(R a, R b)
 SPH_INLINE R SPH_OF_ISA(sph_min_)(R a, R b)
 {
     return SPH_OF_ISA(sph_select_)((B)(a < b), a, b);
-}
-SPH_INLINE R SPH_OF_ISA(sph_sqrt_)(R a)
-{
-    R out = a;
-    for (int l = 0; l < SPH_WIDTH; l++)
-        out[l] = SPH_F32_WORDS ? (T)__builtin_sqrtf((float)a[l]) : (T)__builtin_sqrt((double)a[l]);
-    return out;
 }
 #endif
 
@@ -245,24 +234,37 @@ SPH_INLINE R SPH_OF_ISA(sph_sub_where_)(M m, R sum, R a)
 }
 #endif
 
-/* 1 / sqrt(a), and 0 of 0. */
-SPH_INLINE R SPH_OF_ISA(sph_rsqrt_)(R a)
-{
-    const R zero = {0};
-    return SPH_OF_ISA(sph_select_)((B)(a > zero), (T)1.0 / SPH_OF_ISA(sph_sqrt_)(a), zero);
-}
-
 /* -- Functions --------------------------------------------------------------------------------- */
 
-/* libm lane by lane: right to its own rounding, and slow; for bodies that cannot do without. */
+#define I B
+#define SPH_FN(type, name, arguments) SPH_INLINE type SPH_OF_ISA(name) arguments
+#define sph_num(a) SPH_OF_ISA(sph_num_)((T)(a))
+#define sph_int(a) SPH_OF_ISA(sph_whole_)((INT)(a))
+#define sph_select(m, a, b) SPH_OF_ISA(sph_select_)((B)(m), (a), (b))
+#define sph_bits(a) ((I)(a))
+#define sph_of_bits(i) ((R)(i))
+#include <sph/lanes-math.h>
+#include <sph/lanes-rsqrt.h>
+
+/* The masked lanes of a, and what gives 1 in the others. */
 SPH_INLINE R SPH_OF_ISA(sph_pow_where_)(B m, R a, R b)
 {
-    R out = SPH_OF_ISA(sph_num_)((T)1.0);
-    for (int l = 0; l < SPH_WIDTH; l++)
-        if (m[l])
-            out[l] = (T)__builtin_pow((double)a[l], (double)b[l]);
-    return out;
+    const R one = sph_num(1.0);
+    return sph_select(m, sph_pow(sph_select(m, a, one), b), one);
 }
+
+#undef I
+#undef SPH_FN
+#undef sph_num
+#undef sph_int
+#undef sph_select
+#undef sph_bits
+#undef sph_of_bits
+#undef sph_exp
+#undef sph_log
+#undef sph_pow
+#undef sph_sqrt
+#undef sph_rsqrt
 
 SPH_INLINE R SPH_OF_ISA(sph_ipow_)(R a, uint32_t n)
 {

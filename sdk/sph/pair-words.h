@@ -18,6 +18,9 @@
      sph_select((a) < sph_num(0.0), sph_num(1.0), sph_num(0.0)))
 #define sph_sqrt(a) SPH_OF_ISA(sph_sqrt_)(a)
 #define sph_rsqrt(a) SPH_OF_ISA(sph_rsqrt_)(a)
+#define sph_exp(a) SPH_OF_ISA(sph_exp_)(a)
+#define sph_log(a) SPH_OF_ISA(sph_log_)(a)
+#define sph_pow(a, b) SPH_OF_ISA(sph_pow_)((a), (b))
 #define sph_pow_where(m, a, b) SPH_OF_ISA(sph_pow_where_)((B)(m), (a), (b))
 #define sph_ipow(a, n) SPH_OF_ISA(sph_ipow_)((a), (n))
 /* The shapes 3 and 4 are 1 and 2 with one smoothing length for all. */
@@ -46,6 +49,9 @@
 #undef sph_sign
 #undef sph_sqrt
 #undef sph_rsqrt
+#undef sph_exp
+#undef sph_log
+#undef sph_pow
 #undef sph_pow_where
 #undef sph_ipow
 #undef sph_w

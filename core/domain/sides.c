@@ -86,9 +86,9 @@ static void move_kept(struct particles *p, size_t i, int axis, double from, doub
         const struct column *c = &p->column[k];
 
         if (c->type == SPH_VECTOR && c->name[0] == 'x' && c->name[1] == '.') {
-            double *kept = (double *)c->data + (size_t)axis * c->plane + i;
+            double kept = column_get(c, (uint32_t)axis, i);
 
-            *kept = flipped ? from + to - *kept : *kept + (to - from);
+            column_set(c, (uint32_t)axis, i, flipped ? from + to - kept : kept + (to - from));
         }
     }
 }
@@ -101,9 +101,7 @@ static void turn_state(struct particles *p, size_t i, int axis)
 
         for (uint32_t q = 0; c->state && !is_position(c) && q < c->ncomp; q++) {
             if (turns(c->type, p->dim, q, axis)) {
-                double *v = (double *)c->data + q * c->plane + i;
-
-                *v = -*v;
+                column_set(c, q, i, -column_get(c, q, i));
             }
         }
     }
@@ -300,7 +298,6 @@ int ghosts_make(struct ghosts *g, const struct box *box, struct particles *p, do
 static void refresh_real(const struct ghosts *g, const struct box *box, struct particles *p,
                          const struct column *c, uint32_t k)
 {
-    double *x = (double *)c->data + k * c->plane;
     bool position = strcmp(c->name, "x") == 0;
     unsigned turning = 0; /* the image bits that change the sign */
 
@@ -310,7 +307,7 @@ static void refresh_real(const struct ghosts *g, const struct box *box, struct p
         }
     }
     for (size_t q = 0; q < g->n; q++) {
-        double value = x[g->parent[q]];
+        double value = column_get(c, k, g->parent[q]);
         unsigned image = g->image[q];
 
         if (position) {
@@ -323,7 +320,7 @@ static void refresh_real(const struct ghosts *g, const struct box *box, struct p
 
             value = times % 2 ? -value : value;
         }
-        x[p->n + q] = value;
+        column_set(c, k, p->n + q, value);
     }
 }
 

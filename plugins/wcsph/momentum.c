@@ -9,14 +9,10 @@ enum { ALPHA, BETA, GRAVITY };
 static const sph_param params[] = {WCSPH_VISCOSITY, WCSPH_GRAVITY};
 
 static const sph_prop props[] = {
-    WCSPH_M,
-    WCSPH_V,
-    WCSPH_RHO,
-    WCSPH_P,
-    WCSPH_CS,
-    SPH_PROP("drho", "kg/m^d/s", "rate of the density", SPH_SCALAR, SPH_DST_READ, 0.0),
-    WCSPH_A,
-    WCSPH_DT,
+    WCSPH_M,   WCSPH_V,
+    WCSPH_RHO, WCSPH_P,
+    WCSPH_CS,  SPH_PROP("drho", "kg/m^d/s", "rate of the density", SPH_SCALAR, SPH_DST_READ, 0.0),
+    WCSPH_A,   WCSPH_DT,
 };
 
 #define SPH_LOOP sweep

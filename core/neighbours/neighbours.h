@@ -77,7 +77,7 @@ int group_list_make(struct group_list *list, const struct cloud *dst, const stru
                     int threads, struct error *e);
 /* Directed pairs within reach (no skin, self pairs included) among those that the list offers. */
 uint64_t group_list_count(const struct group_list *list, const struct cloud *dst,
-                          const struct cloud *src);
+                          const struct cloud *src, int threads);
 /* Entries of groups [first, end). */
 static inline uint64_t group_list_entries(const struct group_list *list, size_t first, size_t end)
 {

@@ -168,7 +168,7 @@ static inline void cloud_sort(struct owned *o, double cell)
     double *old = malloc((n + 1) * sizeof *old);
     struct error e;
 
-    assert_int_equal(cell_order(&o->c, NULL, cell, order, &e), 0);
+    assert_int_equal(cell_order(&o->c, NULL, cell, 1, order, &e), 0);
     for (int k = 0; k <= o->c.dim; k++) {
         double *x = k < o->c.dim ? o->x[k] : o->h;
 

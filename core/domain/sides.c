@@ -2,6 +2,8 @@
  * particles' position and state columns, and what stands behind the real particles. */
 #include "domain/sides.h"
 
+#include "neighbours/neighbours.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -260,6 +262,35 @@ static int add_layer(struct ghosts *g, const struct box *box, struct particles *
     return 0;
 }
 
+/* Puts the ghosts into cell order, by their positions. Where those are no numbers they stay as they
+ * are: the neighbour search names the particle. */
+static int sort_ghosts(struct ghosts *g, const struct box *box, struct particles *p, double cell,
+                       struct error *e)
+{
+    struct cloud cloud = {.dim = p->dim, .n = g->n};
+    size_t bytes = g->n * (sizeof(uint32_t) + sizeof *g->parent + sizeof *g->image);
+    uint32_t *order = malloc(bytes + 1), *parent = order + g->n;
+    uint8_t *image = (uint8_t *)(parent + g->n);
+
+    if (!order) {
+        return error_memory(e, "the order of ghosts", bytes);
+    }
+    for (int a = 0; a < p->dim; a++) {
+        cloud.x[a] = particles_real(p, "x", (uint32_t)a) + p->n;
+    }
+    if (cell_order(&cloud, NULL, cell, 1, order, NULL) == 0) {
+        memcpy(parent, g->parent, g->n * sizeof *parent);
+        memcpy(image, g->image, g->n * sizeof *image);
+        for (size_t k = 0; k < g->n; k++) {
+            g->parent[k] = parent[order[k]];
+            g->image[k] = image[order[k]];
+        }
+        ghosts_refresh(g, box, p, particles_find(p, "x"));
+    }
+    free(order);
+    return 0;
+}
+
 int ghosts_make(struct ghosts *g, const struct box *box, struct particles *p, double margin,
                 struct error *e)
 {
@@ -287,6 +318,9 @@ int ghosts_make(struct ghosts *g, const struct box *box, struct particles *p, do
             add_layer(g, box, p, a, IMAGE_HIGH, present, margin, e) != 0) {
             return -1;
         }
+    }
+    if (g->n > 0 && sort_ghosts(g, box, p, margin, e) != 0) {
+        return -1;
     }
     if (h >= 0) {
         ghosts_refresh(g, box, p, h);

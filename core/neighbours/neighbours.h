@@ -77,7 +77,7 @@ int group_list_make(struct group_list *list, const struct cloud *dst, const stru
                     int threads, struct error *e);
 /* Directed pairs within reach (no skin, self pairs included) among those that the list offers. */
 uint64_t group_list_count(const struct group_list *list, const struct cloud *dst,
-                          const struct cloud *src);
+                          const struct cloud *src, int threads);
 /* Entries of groups [first, end). */
 static inline uint64_t group_list_entries(const struct group_list *list, size_t first, size_t end)
 {
@@ -118,12 +118,12 @@ void group_list_fini(struct group_list *list);
 size_t group_list_bytes(const struct group_list *list);
 
 /* The order that puts points into linear cell order (cells of edge `cell`, x fastest, sorted by x
- * and then by id within a cell): order[i] = old index of the i-th. id may be NULL. Deterministic,
- * and the same however the points stood before if the ids differ. Cells that hold many points are
+ * and then by id within a cell): order[i] = old index of the i-th. id may be NULL. The same for any
+ * number of threads, and however the points stood before if the ids differ. Cells that hold many points are
  * divided further, and in a box that is mostly empty larger cells are taken first. Best for the
  * lists: a cell as wide as the reach (with variable h: the mean reach) in 3D, 1.3 times that in
  * 2D. */
-int cell_order(const struct cloud *points, const int64_t *id, double cell, uint32_t *order,
-               struct error *e);
+int cell_order(const struct cloud *points, const int64_t *id, double cell, int threads,
+               uint32_t *order, struct error *e);
 
 #endif

@@ -136,6 +136,7 @@ static void count_sort(struct sorter *s, const struct grid *g, size_t first, siz
     memcpy(order, scratch, n * sizeof *order);
 }
 
+/* Bounds of points [first, first + n) of the order. */
 static void bounds(const struct sorter *s, size_t first, size_t n, double *lo, double *hi)
 {
     for (int a = 0; a < s->c->dim; a++) {
@@ -150,49 +151,154 @@ static void bounds(const struct sorter *s, size_t first, size_t n, double *lo, d
     }
 }
 
-/* Sorts points [first, first + n); `edge` is that of the cells wanted at the top, 0 below it. */
-static int sort_cells(struct sorter *s, size_t first, size_t n, double edge, int depth,
-                      struct error *e)
+static double longest_extent(const struct sorter *s, const double *lo, const double *hi)
 {
-    double lo[3], hi[3], longest = 0;
+    double longest = 0;
+
+    for (int a = 0; a < s->c->dim; a++) {
+        longest = fmax(longest, hi[a] - lo[a]);
+    }
+    return longest;
+}
+
+/* Sorts points [first, first + n), which crowd one cell. */
+static int sort_crowd(struct sorter *s, size_t first, size_t n, int depth)
+{
+    double lo[3], hi[3];
     struct grid g;
     uint32_t *ends;
     size_t begin = 0;
     int status = 0;
 
-    bounds(s, first, n, lo, hi);
-    for (int a = 0; a < s->c->dim; a++) {
-        longest = fmax(longest, hi[a] - lo[a]);
-    }
-    if (!(longest > 0) || depth > DEPTH_MOST || (depth > 0 && n <= CELL_MOST)) {
+    if (n <= CELL_MOST || depth > DEPTH_MOST) {
         sort_by_x(s, s->order + first, n);
         return 0;
     }
-    if (!(edge > 0) || (depth > 0 && edge > longest / 2)) {
-        edge = crowded_edge(lo, hi, s->c->dim, n);
+    bounds(s, first, n, lo, hi);
+    if (!(longest_extent(s, lo, hi) > 0)) {
+        sort_by_x(s, s->order + first, n);
+        return 0;
     }
-    grid_init(&g, lo, hi, s->c->dim, edge, n);
+    grid_init(&g, lo, hi, s->c->dim, crowded_edge(lo, hi, s->c->dim, n), n);
     ends = malloc(g.n * sizeof *ends);
     if (!ends) {
-        return error_memory(e, "sorting particles into cells", g.n * sizeof *ends);
+        return -1;
     }
     count_sort(s, &g, first, n, ends);
     for (size_t k = 0; k < g.n && status == 0; k++) {
-        size_t m = ends[k] - begin;
-
-        if (m > CELL_MOST) {
-            status = sort_cells(s, first + begin, m, edge, depth + 1, e);
-        } else if (m > 1) {
-            sort_by_x(s, s->order + first + begin, m);
-        }
+        status = sort_crowd(s, first + begin, ends[k] - begin, depth + 1);
         begin = ends[k];
     }
     free(ends);
     return status;
 }
 
-int cell_order(const struct cloud *points, const int64_t *id, double cell, uint32_t *order,
-               struct error *e)
+/* -- All points, on several threads ------------------------------------------------------------ */
+
+static void share(size_t n, size_t threads, size_t t, size_t *first, size_t *end)
+{
+    size_t each = (n + threads - 1) / threads;
+
+    *first = t * each < n ? t * each : n;
+    *end = (t + 1) * each < n ? (t + 1) * each : n;
+}
+
+static void all_bounds(const struct sorter *s, double *lo, double *hi, size_t threads)
+{
+    for (int a = 0; a < s->c->dim; a++) {
+        const double *x = s->c->x[a];
+        double least = INFINITY, most = -INFINITY;
+
+        (void)threads;
+#pragma omp parallel for schedule(static) num_threads((int)threads) if (threads > 1)               \
+    reduction(min                                                                                  \
+              : least) reduction(max                                                               \
+                                 : most)
+        for (size_t i = 0; i < s->c->n; i++) {
+            least = x[i] < least ? x[i] : least;
+            most = x[i] > most ? x[i] : most;
+        }
+        lo[a] = least;
+        hi[a] = most;
+    }
+}
+
+/* Like count_sort, of all points as they stand: each thread counts and moves a share of them.
+ * count: [threads][g->n], of which the last thread's are then the ends of the cells. */
+static void share_sort(struct sorter *s, const struct grid *g, size_t threads, uint32_t *count)
+{
+    size_t n = s->c->n;
+    uint32_t sum = 0;
+
+#pragma omp parallel for schedule(static, 1) num_threads((int)threads) if (threads > 1)
+    for (size_t t = 0; t < threads; t++) {
+        uint32_t *mine = count + t * g->n;
+        size_t first, end;
+
+        share(n, threads, t, &first, &end);
+        memset(mine, 0, g->n * sizeof *mine);
+        for (size_t i = first; i < end; i++) {
+            s->cell[i] = (uint32_t)grid_cell(g, s->c->x, i);
+            mine[s->cell[i]]++;
+        }
+    }
+    for (size_t k = 0; k < g->n; k++) {
+        for (size_t t = 0; t < threads; t++) {
+            uint32_t here = count[t * g->n + k];
+
+            count[t * g->n + k] = sum;
+            sum += here;
+        }
+    }
+#pragma omp parallel for schedule(static, 1) num_threads((int)threads) if (threads > 1)
+    for (size_t t = 0; t < threads; t++) {
+        uint32_t *mine = count + t * g->n;
+        size_t first, end;
+
+        share(n, threads, t, &first, &end);
+        for (size_t i = first; i < end; i++) {
+            s->order[mine[s->cell[i]]++] = (uint32_t)i;
+        }
+    }
+}
+
+/* Sorts all points into cells of this edge, or of one that suits them if it is none. */
+static int sort_all(struct sorter *s, double edge, size_t threads, struct error *e)
+{
+    double lo[3], hi[3];
+    struct grid g;
+    uint32_t *count, *ends;
+    int status = 0;
+
+    all_bounds(s, lo, hi, threads);
+    if (!(edge > 0)) {
+        edge = longest_extent(s, lo, hi) > 0 ? crowded_edge(lo, hi, s->c->dim, s->c->n) : 1;
+    }
+    grid_init(&g, lo, hi, s->c->dim, edge, s->c->n);
+    while (threads > 1 && threads * g.n > 4 * s->c->n) {
+        threads--; /* counting must not cost more than the points */
+    }
+    count = malloc(threads * g.n * sizeof *count);
+    if (!count) {
+        return error_memory(e, "sorting particles into cells", threads * g.n * sizeof *count);
+    }
+    share_sort(s, &g, threads, count);
+    ends = count + (threads - 1) * g.n;
+#pragma omp parallel for schedule(dynamic, 64) num_threads((int)threads) if (threads > 1)          \
+    reduction(min                                                                                  \
+              : status)
+    for (size_t k = 0; k < g.n; k++) {
+        size_t begin = k ? ends[k - 1] : 0;
+        int failed = sort_crowd(s, begin, ends[k] - begin, 1);
+
+        status = failed < status ? failed : status;
+    }
+    free(count);
+    return status == 0 ? 0 : error_memory(e, "sorting particles into cells", g.n * sizeof *count);
+}
+
+int cell_order(const struct cloud *points, const int64_t *id, double cell, int threads,
+               uint32_t *order, struct error *e)
 {
     struct sorter s = {.c = points, .id = id, .order = order};
     size_t n = points->n;
@@ -209,10 +315,7 @@ int cell_order(const struct cloud *points, const int64_t *id, double cell, uint3
         return error_memory(e, "sorting particles", 2 * n * sizeof *s.scratch);
     }
     s.cell = s.scratch + n;
-    for (size_t i = 0; i < n; i++) {
-        order[i] = (uint32_t)i;
-    }
-    status = sort_cells(&s, 0, n, cell, 0, e);
+    status = sort_all(&s, cell, threads > 1 && n > 4096 ? (size_t)threads : 1, e);
     free(s.scratch);
     return status;
 }

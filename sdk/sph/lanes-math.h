@@ -122,9 +122,9 @@ SPH_FN(R, sph_exp_of_sum_, (R a, R b))
     p = p * r2 + sph_num(0.5000000000000011);
     q = q * r2 + sph_num(0.16666666666666674);
 #endif
-    p = sph_num(1.0) + (r + ((q * r + p) * r2 + lost));
     /* Twice, times 2^(k - 1): 2^k itself may be too large. */
-    p = (p + p) * sph_of_bits(sph_bits(n) << SPH_M_FRACTION);
+    p = (r + ((q * r + p) * r2 + lost)) * sph_num(2.0) + sph_num(2.0);
+    p = p * sph_of_bits(sph_bits(n) << SPH_M_FRACTION);
     p = sph_select(a < sph_num(SPH_M_EXP_LEAST), sph_num(0.0), p);
     return sph_select(a > sph_num(SPH_M_EXP_MOST), sph_of_bits(sph_int(SPH_M_INF)), p);
 }
@@ -163,8 +163,9 @@ SPH_FN(R, sph_log_ends_, (R a, R p))
 SPH_FN(R, sph_log_, (R a))
 {
     R k;
-    const R f = SPH_M_MANTISSA(a, &k) - sph_num(1.0);
-    const R s = f / (f + sph_num(2.0));
+    const R m = SPH_M_MANTISSA(a, &k);
+    const R f = m - sph_num(1.0);
+    const R s = f / (m + sph_num(1.0));
     const R h = f * f * sph_num(0.5);
     const R z = s * s;
 #if SPH_F32_WORDS
@@ -197,7 +198,7 @@ SPH_FN(R, sph_log_long_, (R a, R *rest))
     const R f = m - one;
     const R inverse = one / (m + one);
     const R quotient = f * inverse;
-    /* s = t + u: t short enough for an exact t^3, u out of the remainder of its division. */
+    /* s = t + u: t short enough for an exact t^3, u out of the remainder of the division. */
     const R t = SPH_M_CUT(quotient, SPH_M_THIRD);
     const R d_high = SPH_M_CUT(m + one, SPH_M_HALF);
     const R d_low = m - (d_high - one);
@@ -214,9 +215,10 @@ SPH_FN(R, sph_log_long_, (R a, R *rest))
     const R s = s_high + s_low;
     const R z = s * s;
     const R third = (t * t * t) * sph_num(SPH_M_2_3);
-    const R third_low = u * (z + t * (s + t)) * sph_num(SPH_M_2_3);
-    /* 2/5 + 2/7 y + ...: y is z, but sooner */
+    /* The quotient as divided is there sooner than s, and will do where little hangs on it. */
     const R y = quotient * quotient;
+    const R third_low = u * ((y + t * (quotient + t)) * sph_num(SPH_M_2_3));
+    /* 2/5 + 2/7 y + ... */
 #if SPH_F32_WORDS
     R p = sph_num(0.233314827); /* 2^-35.6 */
     p = p * y + sph_num(0.285518259);
@@ -233,14 +235,13 @@ SPH_FN(R, sph_log_long_, (R a, R *rest))
     p = q * y + p;
 #endif
     p = (s * z) * (p * z + sph_num(SPH_M_2_3_LOW)) + third_low;
-    p = s_low * sph_num(2.0) + p;
-    p = k * sph_num(SPH_M_LN2_LOW) + p;
     /* The exact terms, largest first; k ln 2 is 0 or more than the others (Fast2Sum: Dekker). */
     const R pair = s_high * sph_num(2.0) + third;
     const R pair_low = third - (pair - s_high * sph_num(2.0));
     const R whole = k * sph_num(SPH_M_LN2);
     const R high = SPH_M_CUT(whole + pair, SPH_M_HALF);
-    *rest = ((whole - high) + pair) + (pair_low + p);
+    const R low = k * sph_num(SPH_M_LN2_LOW) + (pair_low + s_low * sph_num(2.0));
+    *rest = (((whole - high) + pair) + low) + p;
     return SPH_M_LOG_ENDS(a, high);
 }
 

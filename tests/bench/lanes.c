@@ -25,38 +25,14 @@ static double now(void)
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 
-/* libm, a value at a time, as pow_where of a body without these functions would. */
-static double libm_value(int k, double a, double b)
-{
-    return k == LANES_EXP ? exp(a) : k == LANES_LOG ? log(a) : k == LANES_POW ? pow(a, b) : 0;
-}
-
-static float libm_float(int k, float a, float b)
-{
-    return k == LANES_EXP ? expf(a) : k == LANES_LOG ? logf(a) : k == LANES_POW ? powf(a, b) : 0;
-}
-
-static void libm_over(int k, bool f32)
-{
-    if (f32)
-        for (int i = 0; i < N; i++)
-            out.f[i] = libm_float(k, x.f[i], y.f[i]);
-    else
-        for (int i = 0; i < N; i++)
-            out.d[i] = libm_value(k, x.d[i], y.d[i]);
-}
-
-/* ns per value; set NULL: libm */
-static double cost(const struct lanes_set *set, int k, bool f32)
+/* ns per value */
+static double cost(void (*function)(const void *, const void *, void *, size_t))
 {
     double best = INFINITY;
 
     for (int r = 0; r < ROUNDS; r++) {
         const double start = now();
-        if (set)
-            set->function[k](&x, &y, &out, N);
-        else
-            libm_over(k, f32);
+        function(&x, &y, &out, N);
         best = fmin(best, now() - start);
     }
     return best / N * 1e9;
@@ -82,30 +58,21 @@ int main(void)
 
     printf("%-18s", "ns per value");
     for (int k = 0; k < LANES_FUNCTIONS; k++)
-        printf("%16s", names[k]);
+        printf(k <= LANES_POW ? "%8s (libm %5s)" : "%9s", names[k], "x");
     printf("\n");
-    for (int f32 = 0; f32 < 2; f32++) {
-        double libm[LANES_FUNCTIONS] = {0};
-        fill(f32);
-        printf("%-18s", f32 ? "libm, float" : "libm, double");
-        for (int k = 0; k <= LANES_POW; k++) {
-            libm[k] = cost(NULL, k, f32);
-            printf("%16.2f", libm[k]);
+    for (size_t s = 0; (set = lanes_set(s)); s++) {
+        printf("%-18s", set->name);
+        fill(set->f32);
+        for (int k = 0; k < LANES_FUNCTIONS; k++) {
+            const double ns = cost(set->function[k]);
+            if (k <= LANES_POW) {
+                const double libm = cost(set->libm[k]);
+                printf("%8.2f (%5.2f %4.1fx)", ns, libm, libm / ns);
+            } else {
+                printf("%9.2f", ns);
+            }
         }
         printf("\n");
-        for (size_t s = 0; (set = lanes_set(s)); s++) {
-            if (set->f32 != f32)
-                continue;
-            printf("%-18s", set->name);
-            for (int k = 0; k < LANES_FUNCTIONS; k++) {
-                const double ns = cost(set, k, f32);
-                if (k <= LANES_POW)
-                    printf("%8.2f (%4.1fx)", ns, libm[k] / ns);
-                else
-                    printf("%16.2f", ns);
-            }
-            printf("\n");
-        }
     }
     return EXIT_SUCCESS;
 }

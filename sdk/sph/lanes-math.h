@@ -103,27 +103,24 @@ SPH_FN(R, sph_exp_of_sum_, (R a, R b))
     const R r = high + low;
     const R lost = (high - r) + low;
     const R r2 = r * r;
-    /* (exp(r) - 1 - r) / r^2 for |r| <= ln 2 / 2, even and odd powers beside each other */
+    /* (exp(r) - 1 - r) / r^2 for |r| <= ln 2 / 2. In pairs (Estrin), here and below: fewer
+     * operations wait for each other. */
 #if SPH_F32_WORDS
-    R p = sph_num(0.00138131448); /* 2^-27.6 */
-    R q = sph_num(0.00836941879);
-    p = p * r2 + sph_num(0.041668456);
-    q = q * r2 + sph_num(0.166665152);
-    p = p * r2 + sph_num(0.49999994);
+    R p = r * sph_num(0.00836941879) + sph_num(0.041668456); /* 2^-27.6 */
+    p = r2 * sph_num(0.00138131448) + p;
+    p = p * r2 + (r * sph_num(0.166665152) + sph_num(0.49999994));
 #else
-    R p = sph_num(2.76332452138983e-07); /* 2^-56.2 */
-    R q = sph_num(2.511050317061261e-08);
-    p = p * r2 + sph_num(2.4801485756089112e-05);
-    q = q * r2 + sph_num(2.755724112944857e-06);
-    p = p * r2 + sph_num(0.0013888888949214145);
-    q = q * r2 + sph_num(0.0001984126988766238);
-    p = p * r2 + sph_num(0.041666666666517416);
-    q = q * r2 + sph_num(0.008333333333321855);
-    p = p * r2 + sph_num(0.5000000000000011);
-    q = q * r2 + sph_num(0.16666666666666674);
+    const R r4 = r2 * r2;
+    R p = r * sph_num(2.511050317061261e-08) + sph_num(2.76332452138983e-07); /* 2^-56.2 */
+    R q = r * sph_num(2.755724112944857e-06) + sph_num(2.4801485756089112e-05);
+    q = q * r2 + (r * sph_num(0.0001984126988766238) + sph_num(0.0013888888949214145));
+    p = p * r4 + q;
+    q = r * sph_num(0.008333333333321855) + sph_num(0.041666666666517416);
+    q = q * r2 + (r * sph_num(0.16666666666666674) + sph_num(0.5000000000000011));
+    p = p * r4 + q;
 #endif
     /* Twice, times 2^(k - 1): 2^k itself may be too large. */
-    p = (r + ((q * r + p) * r2 + lost)) * sph_num(2.0) + sph_num(2.0);
+    p = (r + (p * r2 + lost)) * sph_num(2.0) + sph_num(2.0);
     p = p * sph_of_bits(sph_bits(n) << SPH_M_FRACTION);
     p = sph_select(a < sph_num(SPH_M_EXP_LEAST), sph_num(0.0), p);
     return sph_select(a > sph_num(SPH_M_EXP_MOST), sph_of_bits(sph_int(SPH_M_INF)), p);
@@ -174,14 +171,11 @@ SPH_FN(R, sph_log_, (R a))
     p = p * z + sph_num(0.666667759);
 #else
     const R z2 = z * z;
-    R p = sph_num(0.1481051999082406); /* 2^-58.6 */
-    R q = sph_num(0.15313164375076815);
-    p = p * z2 + sph_num(0.18183571541169416);
-    q = q * z2 + sph_num(0.2222219909089342);
-    p = p * z2 + sph_num(0.28571428729284787);
-    q = q * z2 + sph_num(0.39999999999519825);
-    p = p * z2 + sph_num(0.666666666666671);
-    p = q * z + p;
+    R p = z * sph_num(0.15313164375076815) + sph_num(0.18183571541169416); /* 2^-58.6 */
+    p = z2 * sph_num(0.1481051999082406) + p;
+    R q = z * sph_num(0.2222219909089342) + sph_num(0.28571428729284787);
+    q = q * z2 + (z * sph_num(0.39999999999519825) + sph_num(0.666666666666671));
+    p = p * (z2 * z2) + q;
 #endif
     p = k * sph_num(SPH_M_LN2_LOW) + s * (p * z + h);
     p = k * sph_num(SPH_M_LN2) + (f - (h - p));
@@ -225,14 +219,11 @@ SPH_FN(R, sph_log_long_, (R a, R *rest))
     p = p * y + sph_num(0.4000009);
 #else
     const R y2 = y * y;
-    R p = sph_num(0.13195975128689813); /* 2^-66.2 */
-    R q = sph_num(0.13256857159385146);
-    p = p * y2 + sph_num(0.15386755578928307);
-    q = q * y2 + sph_num(0.18181784406529783);
-    p = p * y2 + sph_num(0.22222222519456103);
-    q = q * y2 + sph_num(0.28571428570102286);
-    p = p * y2 + sph_num(0.4000000000000225);
-    p = q * y + p;
+    R p = y * sph_num(0.13256857159385146) + sph_num(0.15386755578928307); /* 2^-66.2 */
+    p = y2 * sph_num(0.13195975128689813) + p;
+    R q = y * sph_num(0.18181784406529783) + sph_num(0.22222222519456103);
+    q = q * y2 + (y * sph_num(0.28571428570102286) + sph_num(0.4000000000000225));
+    p = p * (y2 * y2) + q;
 #endif
     p = (s * z) * (p * z + sph_num(SPH_M_2_3_LOW)) + third_low;
     /* The exact terms, largest first; k ln 2 is 0 or more than the others (Fast2Sum: Dekker). */

@@ -1,11 +1,11 @@
 /* sph/lanes-math.h -- exp, log and pow in every lane at once. One text for the processor's vectors
  * and for OpenCL C; no libm, no intrinsics, no branches on lanes.
  *
- *   sph_exp(a)       at most 1 ulp off. Above its range inf; results below exp(-708), for float
- *                    exp(-86.9), are 0: there is no gradual underflow.
+ *   sph_exp(a)       at most 1 ulp off. Above its range inf. There is no gradual underflow: results
+ *                    below 5e-308, for float 3e-38, are right or 0.
  *   sph_log(a)       at most 1 ulp off. 0 gives -inf, less gives NaN.
  *   sph_pow(a, b)    a^b for a >= 0, at most 2 ulp off (float: 1.5); less than 0 gives NaN. Its
- *                    range is sph_exp's. b = 0 gives 1 for every a; 1^b is 1 for every number b.
+ *                    range is sph_exp's. b = 0 gives 1 for every a; 1^b is 1 for every finite b.
  *   NaN gives NaN (but for b = 0). A device that flushes subnormal numbers takes them as 0 here.
  *
  * Included once for each instruction set and precision, where these words mean:
@@ -19,7 +19,7 @@
  *                         what it is called there. On a device: name itself.
  * Each function has a macro, by which it is called without its set. Those for bodies (sph_exp,
  * sph_log, sph_pow) stay defined, and whoever switches the words off undefines them; what begins
- * with SPH_M_ or ends in an underscore is this file's own, and gone at its end.
+ * with SPH_M_ is this file's own, and gone at its end.
  *
  * Every number here comes out right whether or not the compiler contracts a * b + c: where a
  * product must be exact, its factors have so few bits that it is. They are cut off as bits, which
@@ -33,14 +33,16 @@
 #define sph_log(a) SPH_OF_ISA(sph_log_)(a)
 #define sph_pow(a, b) SPH_OF_ISA(sph_pow_)((a), (b))
 
-#define sph_exp_of_sum_(a, b) SPH_OF_ISA(sph_exp_of_sum_)((a), (b))
-#define sph_mantissa_(a, exponent) SPH_OF_ISA(sph_mantissa_)((a), (exponent))
-#define sph_log_long_(a, low) SPH_OF_ISA(sph_log_long_)((a), (low))
+#define SPH_M_EXP_OF_SUM(a, b) SPH_OF_ISA(sph_exp_of_sum_)((a), (b))
+#define SPH_M_MANTISSA(a, exponent) SPH_OF_ISA(sph_mantissa_)((a), (exponent))
+#define SPH_M_LOG_ENDS(a, p) SPH_OF_ISA(sph_log_ends_)((a), (p))
+#define SPH_M_LOG_LONG(a, rest) SPH_OF_ISA(sph_log_long_)((a), (rest))
 #define SPH_M_CUT(a, bits) sph_of_bits(sph_bits(a) & sph_int(bits))
 
 #if SPH_F32_WORDS
 #define SPH_M_FRACTION 23
 #define SPH_M_INF 0x7f800000
+#define SPH_M_MINUS_INF (-0x800000)
 #define SPH_M_NAN 0x7fc00000
 #define SPH_M_POSITIVE 0x7fffffff
 #define SPH_M_FRACTION_BITS 0x007fffff
@@ -55,7 +57,7 @@
 #define SPH_M_SCALE 33554432.0 /* 2^25: makes a subnormal number a normal one */
 #define SPH_M_SCALE_LOG 25.0
 #define SPH_M_EXP_MOST 89.0
-#define SPH_M_EXP_LEAST -86.9
+#define SPH_M_EXP_LEAST -86.7
 #define SPH_M_LOG2E 1.44269502
 #define SPH_M_LN2 0.693145751953125 /* 16 bits, so that a whole number of them is exact */
 #define SPH_M_LN2_LOW 1.42860677e-06
@@ -64,12 +66,13 @@
 #else
 #define SPH_M_FRACTION 52
 #define SPH_M_INF 0x7ff0000000000000
+#define SPH_M_MINUS_INF (-0x10000000000000)
 #define SPH_M_NAN 0x7ff8000000000000
 #define SPH_M_POSITIVE 0x7fffffffffffffff
 #define SPH_M_FRACTION_BITS 0x000fffffffffffff
 #define SPH_M_ROOT_HALF 0x3fe6a09e667f3bcd
-#define SPH_M_HALF (-0x8000000)       /* -1 << 27: keeps 26 bits */
-#define SPH_M_THIRD (-0x4000000000)   /* -1 << 38: keeps 15 bits */
+#define SPH_M_HALF (-0x8000000)        /* -1 << 27: keeps 26 bits */
+#define SPH_M_THIRD (-0x4000000000)    /* -1 << 38: keeps 15 bits */
 #define SPH_M_ROUND 6755399441055744.0 /* 1.5 * 2^52 */
 #define SPH_M_ROUND_BITS 0x4338000000000000
 #define SPH_M_BIAS 1022.0
@@ -78,7 +81,7 @@
 #define SPH_M_SCALE 18014398509481984.0 /* 2^54 */
 #define SPH_M_SCALE_LOG 54.0
 #define SPH_M_EXP_MOST 710.0
-#define SPH_M_EXP_LEAST -708.0
+#define SPH_M_EXP_LEAST -707.8
 #define SPH_M_LOG2E 1.4426950408889634
 #define SPH_M_LN2 0.6931471805598903 /* 42 bits */
 #define SPH_M_LN2_LOW 5.497923018708371e-14
@@ -87,50 +90,45 @@
 #endif
 
 /* exp(a + b), b small beside a, and a with few enough bits that a - k ln 2 is exact with the upper
- * part of ln 2 (Cody and Waite, Software Manual for the Elementary Functions, 1980): every R for
- * |k| = 1 to 2^11, float 2^8. */
+ * part of ln 2 (Cody and Waite, Software Manual for the Elementary Functions, 1980). Where a is out
+ * of range b does not matter, NaN neither; the range leaves room for a b of 0.2. */
 SPH_FN(R, sph_exp_of_sum_, (R a, R b))
 {
     const R shift = sph_num(SPH_M_ROUND + SPH_M_BIAS);
-    const R most = sph_num(SPH_M_EXP_MOST);
-    b = sph_select(a > most, sph_num(0.0), b);
-    a = sph_select(a > most, most, a);
-    const R sum = a + b;
     /* The lowest bits of n are k and the exponent's bias. */
-    const R n = sum * sph_num(SPH_M_LOG2E) + shift;
+    const R n = (a + b) * sph_num(SPH_M_LOG2E) + shift;
     const R k = n - shift;
     const R high = a - k * sph_num(SPH_M_LN2);
     const R low = b - k * sph_num(SPH_M_LN2_LOW);
     const R r = high + low;
     const R lost = (high - r) + low;
-    /* (exp(r) - 1 - r) / r^2 for |r| <= ln 2 / 2 */
+    const R r2 = r * r;
+    /* (exp(r) - 1 - r) / r^2 for |r| <= ln 2 / 2. In pairs (Estrin), here and below: fewer
+     * operations wait for each other. */
 #if SPH_F32_WORDS
-    R p = sph_num(0.00138131448); /* 2^-27.6 */
-    p = p * r + sph_num(0.00836941879);
-    p = p * r + sph_num(0.041668456);
-    p = p * r + sph_num(0.166665152);
-    p = p * r + sph_num(0.49999994);
+    R p = r * sph_num(0.00836941879) + sph_num(0.041668456); /* 2^-27.6 */
+    p = r2 * sph_num(0.00138131448) + p;
+    p = p * r2 + (r * sph_num(0.166665152) + sph_num(0.49999994));
 #else
-    R p = sph_num(2.511050317061261e-08); /* 2^-56.2 */
-    p = p * r + sph_num(2.76332452138983e-07);
-    p = p * r + sph_num(2.755724112944857e-06);
-    p = p * r + sph_num(2.4801485756089112e-05);
-    p = p * r + sph_num(0.0001984126988766238);
-    p = p * r + sph_num(0.0013888888949214145);
-    p = p * r + sph_num(0.008333333333321855);
-    p = p * r + sph_num(0.041666666666517416);
-    p = p * r + sph_num(0.16666666666666674);
-    p = p * r + sph_num(0.5000000000000011);
+    const R r4 = r2 * r2;
+    R p = r * sph_num(2.511050317061261e-08) + sph_num(2.76332452138983e-07); /* 2^-56.2 */
+    R q = r * sph_num(2.755724112944857e-06) + sph_num(2.4801485756089112e-05);
+    q = q * r2 + (r * sph_num(0.0001984126988766238) + sph_num(0.0013888888949214145));
+    p = p * r4 + q;
+    q = r * sph_num(0.008333333333321855) + sph_num(0.041666666666517416);
+    q = q * r2 + (r * sph_num(0.16666666666666674) + sph_num(0.5000000000000011));
+    p = p * r4 + q;
 #endif
-    p = sph_num(1.0) + (r + (p * (r * r) + lost));
     /* Twice, times 2^(k - 1): 2^k itself may be too large. */
-    p = (p + p) * sph_of_bits(sph_bits(n) << SPH_M_FRACTION);
-    return sph_select(sum < sph_num(SPH_M_EXP_LEAST), sph_num(0.0), p);
+    p = (r + (p * r2 + lost)) * sph_num(2.0) + sph_num(2.0);
+    p = p * sph_of_bits(sph_bits(n) << SPH_M_FRACTION);
+    p = sph_select(a < sph_num(SPH_M_EXP_LEAST), sph_num(0.0), p);
+    return sph_select(a > sph_num(SPH_M_EXP_MOST), sph_of_bits(sph_int(SPH_M_INF)), p);
 }
 
 SPH_FN(R, sph_exp_, (R a))
 {
-    return sph_exp_of_sum_(a, sph_num(0.0));
+    return SPH_M_EXP_OF_SUM(a, sph_num(0.0));
 }
 
 /* a = m 2^exponent, m in [sqrt(1/2), sqrt(2)), so that a near 1 has the exponent 0. For a > 0; for
@@ -138,13 +136,22 @@ SPH_FN(R, sph_exp_, (R a))
 SPH_FN(R, sph_mantissa_, (R a, R *exponent))
 {
     const R normal = sph_num(SPH_M_NORMAL);
-    const R bias = sph_select(a < normal, sph_num(SPH_M_ROUND + SPH_M_SCALE_LOG),
-                              sph_num(SPH_M_ROUND));
+    const R bias =
+        sph_select(a < normal, sph_num(SPH_M_ROUND + SPH_M_SCALE_LOG), sph_num(SPH_M_ROUND));
     a = sph_select(a < normal, a * sph_num(SPH_M_SCALE), a);
     /* Without the sign no difference overflows. */
     const I i = (sph_bits(a) & sph_int(SPH_M_POSITIVE)) - sph_int(SPH_M_ROOT_HALF);
     *exponent = sph_of_bits((i >> SPH_M_FRACTION) + sph_int(SPH_M_ROUND_BITS)) - bias;
     return sph_of_bits((i & sph_int(SPH_M_FRACTION_BITS)) + sph_int(SPH_M_ROOT_HALF));
+}
+
+/* The logarithm where it is no number; else p. */
+SPH_FN(R, sph_log_ends_, (R a, R p))
+{
+    const R at_0 = sph_select(a < sph_num(0.0), sph_of_bits(sph_int(SPH_M_NAN)),
+                              sph_of_bits(sph_int(SPH_M_MINUS_INF)));
+    p = sph_select(a > sph_num(0.0), p, at_0);
+    return sph_select(a <= sph_num(SPH_M_LARGEST), p, a);
 }
 
 /* log(1 + f) = 2 atanh(s), s = f / (2 + f), is 2 s + s z P(z), z = s^2. The first term is not
@@ -153,8 +160,9 @@ SPH_FN(R, sph_mantissa_, (R a, R *exponent))
 SPH_FN(R, sph_log_, (R a))
 {
     R k;
-    const R f = sph_mantissa_(a, &k) - sph_num(1.0);
-    const R s = f / (f + sph_num(2.0));
+    const R m = SPH_M_MANTISSA(a, &k);
+    const R f = m - sph_num(1.0);
+    const R s = f / (m + sph_num(1.0));
     const R h = f * f * sph_num(0.5);
     const R z = s * s;
 #if SPH_F32_WORDS
@@ -162,94 +170,89 @@ SPH_FN(R, sph_log_, (R a))
     p = p * z + sph_num(0.399760783);
     p = p * z + sph_num(0.666667759);
 #else
-    R p = sph_num(0.1481051999082406); /* 2^-58.6 */
-    p = p * z + sph_num(0.15313164375076815);
-    p = p * z + sph_num(0.18183571541169416);
-    p = p * z + sph_num(0.2222219909089342);
-    p = p * z + sph_num(0.28571428729284787);
-    p = p * z + sph_num(0.39999999999519825);
-    p = p * z + sph_num(0.666666666666671);
+    const R z2 = z * z;
+    R p = z * sph_num(0.15313164375076815) + sph_num(0.18183571541169416); /* 2^-58.6 */
+    p = z2 * sph_num(0.1481051999082406) + p;
+    R q = z * sph_num(0.2222219909089342) + sph_num(0.28571428729284787);
+    q = q * z2 + (z * sph_num(0.39999999999519825) + sph_num(0.666666666666671));
+    p = p * (z2 * z2) + q;
 #endif
     p = k * sph_num(SPH_M_LN2_LOW) + s * (p * z + h);
     p = k * sph_num(SPH_M_LN2) + (f - (h - p));
-    const R at_0 = sph_select(a < sph_num(0.0), sph_of_bits(sph_int(SPH_M_NAN)),
-                              -sph_of_bits(sph_int(SPH_M_INF)));
-    p = sph_select(a > sph_num(0.0), p, at_0);
-    return sph_select(a <= sph_num(SPH_M_LARGEST), p, a);
+    return SPH_M_LOG_ENDS(a, p);
 }
 
-/* The logarithm of a > 0 as a sum, with some 11 bits more than R has: the result, and *low. As
- * above, but 2 s and the cubic term 2/3 s^3 are carried in two parts. */
-SPH_FN(R, sph_log_long_, (R a, R *low))
+/* The logarithm as a sum, with some 11 bits more than R has: its upper half, and *rest. As above,
+ * but 2 s and the cubic term 2/3 s^3 are carried in two parts, and the first ones are exact. */
+SPH_FN(R, sph_log_long_, (R a, R *rest))
 {
     const R one = sph_num(1.0);
     R k;
-    const R m = sph_mantissa_(a, &k);
-    /* s = (m - 1) / (m + 1): its upper half, and the rest out of the remainder. */
+    const R m = SPH_M_MANTISSA(a, &k);
     const R f = m - one;
     const R inverse = one / (m + one);
-    const R cut = f * inverse;
-    const R s_high = SPH_M_CUT(cut, SPH_M_HALF);
+    const R quotient = f * inverse;
+    /* s = t + u: t short enough for an exact t^3, u out of the remainder of the division. */
+    const R t = SPH_M_CUT(quotient, SPH_M_THIRD);
     const R d_high = SPH_M_CUT(m + one, SPH_M_HALF);
     const R d_low = m - (d_high - one);
+#if SPH_F32_WORDS
+    /* There so short a t would leave u too coarse. */
+    const R s_high = SPH_M_CUT(quotient, SPH_M_HALF);
     const R s_low = ((f - s_high * d_high) - s_high * d_low) * inverse;
+    const R u = (s_high - t) + s_low;
+#else
+    const R s_high = t;
+    const R s_low = ((f - s_high * d_high) - s_high * d_low) * inverse;
+    const R u = s_low;
+#endif
     const R s = s_high + s_low;
     const R z = s * s;
-    /* s^3 = t^3 + u (3 t s + u^2), s = t + u, and t^3 is exact. */
-    const R t = SPH_M_CUT(cut, SPH_M_THIRD);
-    const R u = (s_high - t) + s_low;
-    const R cube = t * t * t;
-    const R cube_low = u * (sph_num(3.0) * t * s + u * u);
-    /* 2/5 + 2/7 z + ... */
+    const R third = (t * t * t) * sph_num(SPH_M_2_3);
+    /* The quotient as divided is there sooner than s, and will do where little hangs on it. */
+    const R y = quotient * quotient;
+    const R third_low = u * ((y + t * (quotient + t)) * sph_num(SPH_M_2_3));
+    /* 2/5 + 2/7 y + ... */
 #if SPH_F32_WORDS
     R p = sph_num(0.233314827); /* 2^-35.6 */
-    p = p * z + sph_num(0.285518259);
-    p = p * z + sph_num(0.4000009);
+    p = p * y + sph_num(0.285518259);
+    p = p * y + sph_num(0.4000009);
 #else
-    R p = sph_num(0.13195975128689813); /* 2^-66.2 */
-    p = p * z + sph_num(0.13256857159385146);
-    p = p * z + sph_num(0.15386755578928307);
-    p = p * z + sph_num(0.18181784406529783);
-    p = p * z + sph_num(0.22222222519456103);
-    p = p * z + sph_num(0.28571428570102286);
-    p = p * z + sph_num(0.4000000000000225);
+    const R y2 = y * y;
+    R p = y * sph_num(0.13256857159385146) + sph_num(0.15386755578928307); /* 2^-66.2 */
+    p = y2 * sph_num(0.13195975128689813) + p;
+    R q = y * sph_num(0.18181784406529783) + sph_num(0.22222222519456103);
+    q = q * y2 + (y * sph_num(0.28571428570102286) + sph_num(0.4000000000000225));
+    p = p * (y2 * y2) + q;
 #endif
-    p = s * z * (p * z + sph_num(SPH_M_2_3_LOW)) + cube_low * sph_num(SPH_M_2_3);
-    p = (s_low + s_low) + p + k * sph_num(SPH_M_LN2_LOW);
-    /* The exact terms, largest first: k ln 2 is 0 or more than the others. (Fast2Sum: Dekker.) */
-    const R third = cube * sph_num(SPH_M_2_3);
-    const R pair = (s_high + s_high) + third;
-    const R pair_low = third - (pair - (s_high + s_high));
+    p = (s * z) * (p * z + sph_num(SPH_M_2_3_LOW)) + third_low;
+    /* The exact terms, largest first; k ln 2 is 0 or more than the others (Fast2Sum: Dekker). */
+    const R pair = s_high * sph_num(2.0) + third;
+    const R pair_low = third - (pair - s_high * sph_num(2.0));
     const R whole = k * sph_num(SPH_M_LN2);
-    const R high = whole + pair;
-    *low = (pair - (high - whole)) + (pair_low + p);
-    return high;
+    const R high = SPH_M_CUT(whole + pair, SPH_M_HALF);
+    const R low = k * sph_num(SPH_M_LN2_LOW) + (pair_low + s_low * sph_num(2.0));
+    *rest = (((whole - high) + pair) + low) + p;
+    return SPH_M_LOG_ENDS(a, high);
 }
 
 SPH_FN(R, sph_pow_, (R a, R b))
 {
-    const R zero = sph_num(0.0), inf = sph_of_bits(sph_int(SPH_M_INF));
-    /* Past 2^64 only 1 has a power that is a number; and no product overflows. */
-    const R far = sph_num(18446744073709551616.0);
-    R c = sph_select(b > far, far, b);
-    c = sph_select(c < -far, -far, c);
-    R low;
-    const R high = sph_log_long_(a, &low);
-    const R l_high = SPH_M_CUT(high, SPH_M_HALF);
-    const R c_high = SPH_M_CUT(c, SPH_M_HALF);
-    R p = sph_exp_of_sum_(c_high * l_high,
-                          c_high * ((high - l_high) + low) + (c - c_high) * high);
-    p = sph_select(((a == zero) & (b > zero)) | ((a == inf) & (b < zero)), zero, p);
-    p = sph_select(((a == zero) & (b < zero)) | ((a == inf) & (b > zero)), inf, p);
-    return sph_select((a >= zero) | (b == zero), p, sph_of_bits(sph_int(SPH_M_NAN)));
+    R rest;
+    const R high = SPH_M_LOG_LONG(a, &rest);
+    const R b_high = SPH_M_CUT(b, SPH_M_HALF);
+    const R p = SPH_M_EXP_OF_SUM(b_high * high, (b - b_high) * high + b * rest);
+    return sph_select(b == sph_num(0.0), sph_num(1.0), p);
 }
 
-#undef sph_exp_of_sum_
-#undef sph_mantissa_
-#undef sph_log_long_
+#undef SPH_M_EXP_OF_SUM
+#undef SPH_M_MANTISSA
+#undef SPH_M_LOG_ENDS
+#undef SPH_M_LOG_LONG
 #undef SPH_M_CUT
 #undef SPH_M_FRACTION
 #undef SPH_M_INF
+#undef SPH_M_MINUS_INF
 #undef SPH_M_NAN
 #undef SPH_M_POSITIVE
 #undef SPH_M_FRACTION_BITS

@@ -27,12 +27,34 @@ OVER(over_sqrt, sph_sqrt(a))
 OVER(over_rsqrt, sph_rsqrt(a))
 OVER(over_quotient, sph_num(1.0) / sph_sqrt(a))
 
+/* libm lane by lane, as a body would have to without these functions. */
+SPH_FN(R, libm_lanes_, (R a, R b, int function))
+{
+    R out = a;
+    for (int l = 0; l < SPH_WIDTH; l++)
+#if SPH_F32_WORDS
+        out[l] = function == LANES_EXP   ? expf(a[l])
+                 : function == LANES_LOG ? logf(a[l])
+                                         : powf(a[l], b[l]);
+#else
+        out[l] = function == LANES_EXP   ? exp(a[l])
+                 : function == LANES_LOG ? log(a[l])
+                                         : pow(a[l], b[l]);
+#endif
+    return out;
+}
+
+OVER(libm_exp, SPH_OF_ISA(libm_lanes_)(a, b, LANES_EXP))
+OVER(libm_log, SPH_OF_ISA(libm_lanes_)(a, b, LANES_LOG))
+OVER(libm_pow, SPH_OF_ISA(libm_lanes_)(a, b, LANES_POW))
+
 static const struct lanes_set SPH_OF_ISA(lanes_set) = {
     .name = SPH_SET_NAME,
     .width = SPH_WIDTH,
     .f32 = SPH_F32_WORDS,
     .function = {SPH_OF_ISA(over_exp), SPH_OF_ISA(over_log), SPH_OF_ISA(over_pow),
                  SPH_OF_ISA(over_sqrt), SPH_OF_ISA(over_rsqrt), SPH_OF_ISA(over_quotient)},
+    .libm = {SPH_OF_ISA(libm_exp), SPH_OF_ISA(libm_log), SPH_OF_ISA(libm_pow)},
 };
 
 #undef OVER

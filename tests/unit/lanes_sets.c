@@ -1,6 +1,7 @@
 /* lanes_sets.c -- lane functions for each instruction set (see lanes_sets.h). */
 #include "lanes_sets.h"
 
+#include <math.h>
 #include <stdint.h>
 #include <string.h>
 

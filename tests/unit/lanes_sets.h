@@ -22,6 +22,8 @@ struct lanes_set {
     bool f32;
     /* Of x, pow of x and y; n is a multiple of 8. Both arrays are read. */
     void (*function[LANES_FUNCTIONS])(const void *x, const void *y, void *out, size_t n);
+    /* exp, log and pow by libm, lane by lane. */
+    void (*libm[LANES_POW + 1])(const void *x, const void *y, void *out, size_t n);
 };
 
 /* The k-th, or NULL past the last. */

@@ -185,7 +185,7 @@ int pair_body_build(struct pair_body **out, size_t device, const sph_function *f
 
 /* -- Run -------- */
 
-#define ARGUMENTS 18u /* in front of the columns: see pair_source.h */
+#define ARGUMENTS 20u /* in front of the columns: see pair_source.h */
 
 /* One run: the buffers, by argument. */
 struct call {
@@ -272,43 +272,67 @@ static int take_column(struct call *c, cl_mem buffer, const sph_column *column, 
     return 0;
 }
 
-static int give_scalars(struct call *c, struct error *e)
+/* The spans of a range's groups, and the part of the list that they lie in. */
+struct part {
+    const uint64_t *begin;
+    size_t groups, spans;
+    uint64_t least, end; /* of the list */
+};
+
+static struct part part_of(const sph_batch *b)
+{
+    struct part p = {.begin = b->begin + b->first / SPH_LANES,
+                     .groups = (size_t)((b->count + SPH_LANES - 1) / SPH_LANES)};
+
+    p.spans = (size_t)(p.begin[p.groups] - p.begin[0]);
+    for (size_t k = 0; k < p.spans; k++) {
+        const sph_span *s = &b->span[p.begin[0] + k];
+        if (k == 0 || s->first < p.least)
+            p.least = s->first;
+        if (s->first + s->count > p.end)
+            p.end = s->first + s->count;
+    }
+    return p;
+}
+
+static int give_scalars(struct call *c, const struct part *part, struct error *e)
 {
     const sph_batch *b = c->b;
     const cl_uint same = b->same;
 
     if (give_ulong(c, b->count, e) || give_ulong(c, b->n_src, e) || give_ulong(c, b->first, e) ||
-        give_ulong(c, b->begin[b->first / SPH_LANES], e) || give(c, &same, sizeof(same), e) ||
-        give(c, &c->absolute, sizeof(c->absolute), e) || give(c, &b->time, sizeof(double), e) ||
-        give(c, &b->dt, sizeof(double), e))
+        give_ulong(c, part->begin[0], e) || give_ulong(c, part->least, e) ||
+        give(c, &same, sizeof(same), e) || give(c, &c->absolute, sizeof(c->absolute), e) ||
+        give(c, &b->time, sizeof(double), e) || give(c, &b->dt, sizeof(double), e))
         return -1;
     return give_ulong(c, b->step, e);
 }
 
-static int give_lists(struct call *c, struct error *e)
+/* As they are: 2 bytes a source travel, not 4. */
+static int give_lists(struct call *c, const struct part *part, struct error *e)
 {
     const sph_batch *b = c->b;
-    const uint64_t groups = (b->count + SPH_LANES - 1) / SPH_LANES;
-    const uint64_t *begin = b->begin + b->first / SPH_LANES;
-    const uint64_t entries = begin[groups] - begin[0];
 
-    if (give_data(c, begin, (size_t)(groups + 1) * sizeof(*begin), e))
+    _Static_assert(sizeof(sph_span) == 16 && offsetof(sph_span, base) == 8 &&
+                       offsetof(sph_span, count) == 12,
+                   "sph_span in pair_source.c is another");
+    if (give_data(c, part->begin, (part->groups + 1) * sizeof(*part->begin), e) ||
+        give_data(c, b->span + part->begin[0], part->spans * sizeof(*b->span), e))
         return -1;
-    return give_data(c, b->list + begin[0], (size_t)entries * sizeof(*b->list), e);
+    return give_data(c, part->spans ? b->list + part->least : NULL,
+                     (size_t)(part->end - part->least) * sizeof(*b->list), e);
 }
 
-/* The kernel, as the device's sph_kernel_form has it: the members of the ABI's first version. */
 static int give_kernel(struct call *c, struct error *e)
 {
-    const sph_kernel_form *form = c->b->kernel;
+    const sph_kernel_form *given = c->b->kernel;
+    struct pair_form form;
 
-    _Static_assert(sizeof(sph_kernel_piece) == 120 && offsetof(sph_kernel_form, piece) == 32 &&
-                       offsetof(sph_kernel_form, n_table) == 528 && SPH_KERNEL_KNOTS == 4,
-                   "sph_kernel_form in pair_source.c is another");
-    if (give_data(c, form, offsetof(sph_kernel_form, reserved2) + sizeof(form->reserved2), e))
+    pair_form(&form, given);
+    if (give_data(c, &form, sizeof(form), e))
         return -1;
-    return give_data(c, form->table,
-                     form->n_table ? 2 * ((size_t)form->n_table + 1) * sizeof(double) : 0, e);
+    return give_data(c, given->table,
+                     given->n_table ? 2 * ((size_t)given->n_table + 1) * sizeof(double) : 0, e);
 }
 
 static int give_columns(struct call *c, struct error *e)
@@ -341,7 +365,9 @@ static int launch(struct call *c, struct error *e)
 
 static int run(struct call *c, struct error *e)
 {
-    if (give_scalars(c, e) || give_lists(c, e) || give_kernel(c, e) ||
+    const struct part part = part_of(c->b);
+
+    if (give_scalars(c, &part, e) || give_lists(c, &part, e) || give_kernel(c, e) ||
         give_data(c, c->b->param, c->b->n_params * sizeof(double), e) || give_columns(c, e) ||
         launch(c, e))
         return -1;
@@ -357,7 +383,7 @@ int pair_body_run(struct pair_body *p, const sph_batch *b, bool absolute, struct
     struct call call = {.p = p, .b = b, .absolute = absolute};
     int status;
 
-    if (b->real != SPH_F64 || b->dim != (uint32_t)p->dim || !b->kernel || !b->begin)
+    if (b->real != SPH_F64 || b->dim != (uint32_t)p->dim || !b->kernel || !b->begin || !b->span)
         return error_set(e, EXIT_RUN, "the batch is not one of doubles in %d dimensions", p->dim);
     if (b->count == 0)
         return 0;

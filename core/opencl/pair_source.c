@@ -6,7 +6,9 @@
 
 #include "opencl/pair_source.h"
 
+#include "opencl/math_text.h"
 #include <sph/function.h>
+#include <sph/kernel-value.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,39 +16,28 @@
 /* -- Words -------- */
 
 /* Truth is bit 0 of a mask: comparisons give 1, and ~ turns it over. Masks select, as natively:
- * what a body computes out of reach, a NaN too, goes nowhere. */
+ * what a body computes out of reach, a NaN too, goes nowhere. sph_bits and what follows it is for
+ * sph/lanes-math.h. */
 static const char *const words[] = {
     "#pragma OPENCL EXTENSION cl_khr_fp64 : enable",
     "typedef uint uint32_t;",
     "typedef ulong uint64_t;",
     "typedef int int32_t;",
     "typedef long int64_t;",
-    "typedef double R;",
+    "typedef double T;",
+    "typedef T R;",
     "typedef int B;",
     "typedef struct { double time, dt; ulong step; uint dim; } sph_batch;",
-    "typedef struct {",
-    "    double knot;",
-    "    uint power, n_coef, dpower, dn_coef;",
-    "    double c[6], d[6];",
-    "} sph_kernel_piece;",
-    "typedef struct {",
-    "    uint size, dim, n_pieces, reserved;",
-    "    double support, norm;",
-    "    sph_kernel_piece piece[4];",
-    "    ulong table;",
-    "    double cells;",
-    "    uint n_table, reserved2;",
-    "} sph_kernel_form;",
-    "#define SPH_FORM __constant sph_kernel_form",
+    "typedef struct { ulong first; uint base, count; } sph_span;",
     "",
     "#define sph_num(a) ((R)(a))",
     "static R sph_select(B m, R a, R b) { return m & 1 ? a : b; }",
     "static R sph_max(R a, R b) { return a > b ? a : b; }",
     "static R sph_min(R a, R b) { return a < b ? a : b; }",
-    "static R sph_abs(R a) { return a < 0.0 ? -a : a; }",
+    "static R sph_abs(R a) { return sph_max(a, -a); }",
     "static R sph_sign(R a) { return (a > 0.0 ? 1.0 : 0.0) - (a < 0.0 ? 1.0 : 0.0); }",
     "static R sph_sqrt(R a) { return sqrt(a); }",
-    "static R sph_pow_where(B m, R a, R b) { return m & 1 ? pow(a, b) : 1.0; }",
+    "static R sph_rsqrt(R a) { return a < 2.2250738585072014e-308 ? 0.0 : 1.0 / sqrt(a); }",
     "static R sph_ipow(R a, uint n)",
     "{",
     "    R out = n & 1u ? a : 1.0;",
@@ -61,13 +52,38 @@ static const char *const words[] = {
     "        out *= a;",
     "    return out;",
     "}",
-    "#define sph_add(acc, value) ((acc) += sph_select(in, SPH_TERM(value), 0.0))",
+    "#define sph_add(acc, value) ((acc) += sph_select(in, SPH_ADDED(value), 0.0))",
+    "#define sph_sub(acc, value) ((acc) -= sph_select(in, SPH_TAKEN(value), 0.0))",
     "#define sph_take_min(acc, value) ((acc) = sph_min(sph_select(in, (value), (acc)), (acc)))",
     "#define sph_take_max(acc, value) ((acc) = sph_max(sph_select(in, (value), (acc)), (acc)))",
+    "",
+    "#define SPH_F32_WORDS 0",
+    "#define SPH_OF_ISA(name) name##one",
+    "#define SPH_FN(type, name, arguments) static type SPH_OF_ISA(name) arguments",
+    "#define I long",
+    "#define sph_int(a) ((I)(a))",
+    "#define sph_bits(a) as_long(a)",
+    "#define sph_of_bits(i) as_double(i)",
+};
+
+static const char *const pow_words[] = {
+    "#undef I",
+    "static R sph_pow_where(B m, R a, R b) { return m & 1 ? sph_pow(a, b) : 1.0; }",
     "",
 };
 
 static const char *const kernel_words[] = {
+    "typedef struct {",
+    "    double knot;",
+    "    uint power, n_coef, dpower, dn_coef;",
+    "    double c[6], d[6], e[6];",
+    "} sph_kernel_piece;",
+    "typedef struct {",
+    "    double support, norm, cells;",
+    "    uint n_table, n_pieces, en_coef, reserved;",
+    "    sph_kernel_piece piece[4];",
+    "} sph_kernel_form;",
+    "#define SPH_FORM __constant sph_kernel_form",
     "static R sph_sum_of_powers(R t, uint power, uint n, __constant double *c)",
     "{",
     "    R sum = c[n - 1];",
@@ -95,10 +111,9 @@ static const char *const kernel_words[] = {
     "        return sph_cubic(form, table, q, 0);",
     "    for (uint k = 0; k < form->n_pieces; k++) {",
     "        __constant sph_kernel_piece *p = &form->piece[k];",
-    "        const R t = p->knot - q;",
-    "        sum += sph_sum_of_powers(t > 0.0 ? t : 0.0, p->power, p->n_coef, p->c);",
+    "        sum += sph_sum_of_powers(sph_max(p->knot - q, 0.0), p->power, p->n_coef, p->c);",
     "    }",
-    "    return sum * form->norm;",
+    "    return sum;",
     "}",
     "static R sph_slope(SPH_FORM *form, __global const double *table, R q)",
     "{",
@@ -107,22 +122,33 @@ static const char *const kernel_words[] = {
     "        return sph_cubic(form, table, q, 1);",
     "    for (uint k = 0; k < form->n_pieces; k++) {",
     "        __constant sph_kernel_piece *p = &form->piece[k];",
-    "        const R t = p->knot - q;",
-    "        const R d = sph_sum_of_powers(t > 0.0 ? t : 0.0, p->dpower, p->dn_coef, p->d);",
+    "        const R t = sph_max(p->knot - q, 0.0);",
+    "        const R d = sph_sum_of_powers(t, p->dpower, p->dn_coef, p->d);",
     "        sum += t > 0.0 ? d : 0.0;",
     "    }",
-    "    return sum * form->norm;",
+    "    return sum;",
+    "}",
+    "static R sph_slope_over_q(SPH_FORM *form, __global const double *table, R q)",
+    "{",
+    "    __constant sph_kernel_piece *p = &form->piece[0];",
+    "    if (form->en_coef)",
+    "        return sph_sum_of_powers(sph_max(p->knot - q, 0.0), p->dpower, form->en_coef, p->e);",
+    "    return q > 0.0 ? sph_slope(form, table, q) / q : 0.0;",
     "}",
     "#define sph_w(form, q) sph_value((form), sph_table, (q))",
     "#define sph_dw(form, q) sph_slope((form), sph_table, (q))",
+    "#define sph_dw_q(form, q) sph_slope_over_q((form), sph_table, (q))",
     "",
 };
 
 /* Between the values of the destination and those of a source. */
 static const char *const pair_words[] = {
-    "    for (ulong sph_k = sph_begin[sph_g] - sph_base; sph_k < sph_begin[sph_g + 1] - sph_base;",
-    "         sph_k++) {",
-    "        const ulong sph_j = sph_list[sph_k];",
+    "    for (ulong sph_s = sph_begin[sph_g] - sph_base; sph_s < sph_begin[sph_g + 1] - sph_base;",
+    "         sph_s++)",
+    "    for (uint sph_k = 0; sph_k < sph_spans[sph_s].count; sph_k++) {",
+    "        const sph_span sph_some = sph_spans[sph_s];",
+    "        const ulong sph_j =",
+    "            (ulong)sph_some.base + sph_list[sph_some.first - sph_least + sph_k];",
     "        R dx[DIM];",
     "        R r2 = 0.0;",
     "        for (int sph_c = 0; sph_c < DIM; sph_c++) {",
@@ -135,7 +161,7 @@ static const char *const pair_words[] = {
     "        if (!SPH_SELF)",
     "            in &= !(sph_same && sph_first + sph_i == sph_j);",
     "        const R r = sph_sqrt(r2);",
-    "        const R rinv = r2 > 0.0 ? 1.0 / r : 0.0;",
+    "        const R rinv = sph_rsqrt(r2);",
     "        const R hinv_j = 1.0 / h_j;",
 };
 
@@ -185,6 +211,35 @@ int pair_columns(struct pair_column **out, size_t *n, const sph_device_body *d, 
     return 0;
 }
 
+/* -- The form of W -------- */
+
+void pair_form(struct pair_form *out, const sph_kernel_form *form)
+{
+    *out = (struct pair_form){.support = form->support,
+                              .norm = form->norm,
+                              .cells = form->cells,
+                              .n_table = form->n_table,
+                              .n_pieces = form->n_pieces};
+    for (uint32_t k = 0; k < form->n_pieces; k++) {
+        const sph_kernel_piece *p = &form->piece[k];
+        out->piece[k].knot = p->knot;
+        out->piece[k].power = p->power;
+        out->piece[k].n_coef = p->n_coef;
+        out->piece[k].dpower = p->dpower;
+        out->piece[k].dn_coef = p->dn_coef;
+        for (uint32_t n = 0; n < SPH_KERNEL_COEFS; n++) {
+            out->piece[k].c[n] = p->c[n] * form->norm;
+            out->piece[k].d[n] = p->d[n] * form->norm;
+        }
+    }
+    if (form->n_pieces == 1 && !form->n_table) {
+        double e[SPH_KERNEL_COEFS];
+        out->en_coef = sph_kernel_over_q(&form->piece[0], e);
+        for (uint32_t n = 0; n < out->en_coef; n++)
+            out->piece[0].e[n] = e[n] * form->norm;
+    }
+}
+
 /* -- The kernel -------- */
 
 /* "", "[DIM]", "[DIM * DIM]", and the number of components. */
@@ -202,10 +257,11 @@ static void put_arguments(FILE *out, const struct pair_column *column, size_t n)
 {
     fputs("__kernel void " PAIR_KERNEL "(\n"
           "    const ulong sph_count, const ulong sph_n_src, const ulong sph_first,\n"
-          "    const ulong sph_base, const uint sph_same, const uint sph_absolute,\n"
+          "    const ulong sph_base, const ulong sph_least, const uint sph_same,\n"
+          "    const uint sph_absolute,\n"
           "    const double sph_time, const double sph_dt, const ulong sph_step,\n"
-          "    __global const ulong *sph_begin,\n"
-          "    __global const uint *sph_list, SPH_FORM *K,\n"
+          "    __global const ulong *sph_begin, __global const sph_span *sph_spans,\n"
+          "    __global const ushort *sph_list, SPH_FORM *K,\n"
           "    __global const double *sph_table, __global const double *sph_param,\n"
           "    __global const double *sph_xd, __global const double *sph_hd,\n"
           "    __global const double *sph_xs, __global const double *sph_hs",
@@ -297,7 +353,7 @@ static void put_kernel(FILE *out, const sph_device_body *d, const struct pair_co
           "    const R hinv_i = 1.0 / h_i;\n",
           out);
     for (uint32_t k = 0; k < d->param.count; k++)
-        fprintf(out, "    const double %s = sph_param[%u];\n", value_at(&d->param, k)->name,
+        fprintf(out, "    const T %s = sph_param[%u];\n", value_at(&d->param, k)->name,
                 value_at(&d->param, k)->index);
     put_values(out, &d->i, false);
     put_accumulators(out, &d->sum, "0.0");
@@ -331,12 +387,16 @@ char *pair_source(const sph_device_body *d, int dim, bool measured, struct error
         return NULL;
     }
     PUT(out, words);
+    put_text(out, math_text, "sph/lanes-math.h");
+    PUT(out, pow_words);
     PUT(out, kernel_words);
     fprintf(out, "#define DIM %d\n#define SPH_LANES %u\n#define SPH_SELF %u\n", dim, SPH_LANES,
             d->self);
     fprintf(out, "#define SPH_REACH %s\n", d->reach == SPH_GATHER ? "h_i" : "sph_max(h_i, h_j)");
-    fprintf(out, "#define SPH_TERM(value) %s\n",
-            measured ? "(sph_absolute ? fabs(value) : (value))" : "(value)");
+    /* Where absolute terms are summed, those that are taken off add up with the others. */
+    fprintf(out, "#define SPH_ADDED(value) %s\n#define SPH_TAKEN(value) %s\n",
+            measured ? "(sph_absolute ? fabs(value) : (value))" : "(value)",
+            measured ? "(sph_absolute ? -fabs(value) : (value))" : "(value)");
     if (d->prelude)
         put_text(out, d->prelude, d->prelude_file);
     put_kernel(out, d, column, n);

@@ -3,6 +3,7 @@
 #ifndef SPH_KERNEL_VALUE_H
 #define SPH_KERNEL_VALUE_H
 
+#include <math.h>
 #include <sph/batch.h>
 
 /* For the two below, of a kernel that is a table: the cubic between the ends of a cell. */
@@ -54,6 +55,18 @@ static inline double sph_kernel_w(const sph_kernel_form *kernel, double q)
 static inline double sph_kernel_dw(const sph_kernel_form *kernel, double q)
 {
     return sph_kernel_sum(kernel, q, 1);
+}
+
+/* W' / q of a kernel of one piece: t^dpower (e[0] + e[1] t + ...) of dn_coef - 1 terms, since q =
+ * knot - t divides the sum if W'(0) = 0. The number of terms; 0: it does not. */
+static inline uint32_t sph_kernel_over_q(const sph_kernel_piece *p, double *e)
+{
+    double rest = 0.0, scale = 0.0;
+    for (uint32_t k = 0; k < p->dn_coef; k++) {
+        scale = fmax(scale, fabs(p->d[k]));
+        rest = k + 1 < p->dn_coef ? (e[k] = (p->d[k] + rest) / p->knot) : p->d[k] + rest;
+    }
+    return p->dn_coef > 1 && fabs(rest) <= 1e-12 * scale ? p->dn_coef - 1 : 0;
 }
 
 #endif

@@ -11,29 +11,17 @@
  *   sph_exp(a), sph_log(a), sph_pow(a, b) (a >= 0)
  *   sph_pow_where(m, a, b)           a^b where m holds, else 1
  *   sph_w(K, q), sph_dw(K, q)        kernel and its derivative in q = r / h, without powers of h
- *   sph_dw_q(K, q)                   the latter over q, 0 at 0: for gradients along dx, without 1 / r
+ *   sph_dw_q(K, q)                   the latter over q: for gradients along dx, without 1 / r. Some
+ *                                    number at q = 0 (0 or the limit), where dx is 0
  *   sph_ipow(a, DIM)                 a small whole power
  * No branches on lanes, no calls to anything else. */
 
 #ifndef SPH_OF_ISA
-#include <math.h>
 #include <sph/kernel-value.h>
 #define SPH_CAT2(a, b) a##_##b
 #define SPH_CAT(a, b) SPH_CAT2(a, b)
 #define SPH_OF_ISA(name) SPH_CAT(name, SPH_ISA)
 #define SPH_INLINE static inline __attribute__((always_inline, unused))
-
-/* W' / q of a kernel of one piece: t^dpower (e[0] + e[1] t + ...) of dn_coef - 1 terms, since q =
- * knot - t divides the sum if W'(0) = 0. The number of terms; 0: it does not. */
-static inline uint32_t sph_kernel_over_q(const sph_kernel_piece *p, double *e)
-{
-    double rest = 0.0, scale = 0.0;
-    for (uint32_t k = 0; k < p->dn_coef; k++) {
-        scale = fmax(scale, fabs(p->d[k]));
-        rest = k + 1 < p->dn_coef ? (e[k] = (p->d[k] + rest) / p->knot) : p->d[k] + rest;
-    }
-    return p->dn_coef > 1 && fabs(rest) <= 1e-12 * scale ? p->dn_coef - 1 : 0;
-}
 
 /* What a kernel's form has in common with many: a loop that is compiled for it needs no branches on
  * powers. Wendland's C2 and C4 in two and three dimensions; anything else. */

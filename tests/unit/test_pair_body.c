@@ -16,19 +16,24 @@
 #include <cmocka.h>
 
 enum { N = 43, SOURCES = 61, PLANE = 64, GROUPS = (N + SPH_LANES - 1) / SPH_LANES };
-enum { M, V, SUM, FLOW, LEAST, MOST, N_PROPS };
+enum { CUT = 20 }; /* sources in a group's first span */
+enum { M, V, SUM, REST, FLOW, LEAST, MOST, N_PROPS };
 
 static const char body_text[] =
     "/* The kernel; out of reach the root is NaN. */\n"
     "const R q = r * hinv_i, s = REACH(q, r * hinv_j);\n"
     "sph_add(sum, share * m_j * (sph_w(K, q) + sph_sqrt(4.0 - s * s)));\n"
     "for (int a = 0; a < DIM; a++)\n"
-    "    sph_add(flow[a], sph_dw(K, q) * rinv * (v_i[a] - v_j[a]));\n"
+    "    sph_sub(flow[a], sph_dw(K, q) * rinv * (v_j[a] - v_i[a]));\n"
+    "const T third = 1.0 / 3.0;\n"
+    "sph_add(rest, sph_dw_q(K, q) * r2 * sph_rsqrt(1.0 + q) + sph_exp(-m_j));\n"
+    "sph_sub(rest, sph_log(m_j) * sph_pow(m_j, q) + sph_pow_where(in, q, sph_num(third)));\n"
     "sph_take_min(least, m_j + b->dt);\n"
     "sph_take_max(most, m_j * TWICE + b->time);\n";
 static const sph_device_value body_i[] = {{"v", V, SPH_VECTOR}};
 static const sph_device_value body_j[] = {{"m", M, SPH_SCALAR}, {"v", V, SPH_VECTOR}};
-static const sph_device_value body_sum[] = {{"sum", SUM, SPH_SCALAR}, {"flow", FLOW, SPH_VECTOR}};
+static const sph_device_value body_sum[] = {
+    {"sum", SUM, SPH_SCALAR}, {"rest", REST, SPH_SCALAR}, {"flow", FLOW, SPH_VECTOR}};
 static const sph_device_value body_min[] = {{"least", LEAST, SPH_SCALAR}};
 static const sph_device_value body_max[] = {{"most", MOST, SPH_SCALAR}};
 static const sph_device_value body_param[] = {{"share", 1, 0}};
@@ -51,9 +56,10 @@ static const sph_device_body right = {.size = sizeof(sph_device_body),
 static struct cloud {
     int dim;
     double x[3 * PLANE], h[PLANE], m[PLANE], v[3 * PLANE];
-    double sum[PLANE], flow[3 * PLANE], least[PLANE], most[PLANE];
+    double sum[PLANE], rest[PLANE], flow[3 * PLANE], least[PLANE], most[PLANE];
     uint64_t begin[GROUPS + 1];
-    uint32_t list[GROUPS * SOURCES];
+    sph_span span[2 * GROUPS];
+    uint16_t list[GROUPS * SOURCES];
     sph_column dst[N_PROPS], src[N_PROPS];
     double param[2];
     sph_kernel_form kernel;
@@ -77,9 +83,12 @@ static double bell_slope(double q, uint32_t dim)
     return -3 * pow(fmax(0, 2 - q), 2) + 12 * pow(fmax(0, 1 - q), 2);
 }
 
-static void make_kernel(int dim, bool table)
+enum form { TWO_PIECES, ONE_PIECE, TABLE, N_FORMS };
+
+static void make_kernel(int dim, enum form form)
 {
     static const sph_kernel_term terms[] = {{1, 2, 3, 0}, {-4, 1, 3, 0}};
+    static const sph_kernel_term wendland[] = {{5. / 16, 2, 4, 0}, {-2. / 16, 2, 5, 0}};
     static const sph_item item = {.size = sizeof(item), .dims = SPH_ALL_DIMS, .name = "bell"};
     sph_kernel kernel = {.size = sizeof(kernel),
                          .item = &item,
@@ -87,11 +96,12 @@ static void make_kernel(int dim, bool table)
                          .norm = {0, 1. / 6, 5 / (14 * M_PI), 1 / (4 * M_PI)}};
     struct error e;
 
-    if (table) {
+    if (form == TABLE) {
         kernel.value = bell;
         kernel.slope = bell_slope;
     } else {
-        kernel.terms[dim] = (sph_list)SPH_LIST(terms);
+        kernel.terms[dim] =
+            form == ONE_PIECE ? (sph_list)SPH_LIST(wendland) : (sph_list)SPH_LIST(terms);
     }
     assert_int_equal(kernel_form_make(&cloud.kernel, &kernel, dim, &e), 0);
 }
@@ -105,13 +115,29 @@ static void reset_sums(void)
 {
     for (int i = 0; i < PLANE; i++) {
         cloud.sum[i] = 5;
+        cloud.rest[i] = -2;
         cloud.least[i] = 2;
         cloud.most[i] = -1;
     }
     memset(cloud.flow, 0, sizeof(cloud.flow));
 }
 
-static void make_cloud(int dim, bool table)
+/* Two spans a group. They stand in the list in reverse order of the groups: nothing says that they
+ * follow each other. */
+static void make_lists(void)
+{
+    for (uint64_t g = 0; g < GROUPS; g++) {
+        const uint64_t at = (GROUPS - 1 - g) * SOURCES;
+        cloud.begin[g] = 2 * g;
+        cloud.span[2 * g] = (sph_span){at, 0, CUT};
+        cloud.span[2 * g + 1] = (sph_span){at + CUT, CUT, SOURCES - CUT};
+        for (uint64_t k = 0; k < SOURCES; k++)
+            cloud.list[at + k] = (uint16_t)(k < CUT ? k : k - CUT);
+    }
+    cloud.begin[GROUPS] = 2 * GROUPS;
+}
+
+static void make_cloud(int dim, enum form form)
 {
     uint64_t seed = 7;
 
@@ -125,20 +151,18 @@ static void make_cloud(int dim, bool table)
         cloud.h[i] = 0.1 + 0.15 * unit(&seed);
         cloud.m[i] = unit(&seed);
     }
-    for (uint32_t g = 0; g <= GROUPS; g++)
-        cloud.begin[g] = (uint64_t)g * SOURCES;
-    for (uint32_t k = 0; k < GROUPS * SOURCES; k++)
-        cloud.list[k] = k % SOURCES;
+    make_lists();
     cloud.dst[V] = cloud.src[V] = column(cloud.v, SPH_VECTOR);
     cloud.src[M] = column(cloud.m, SPH_SCALAR);
     cloud.dst[SUM] = column(cloud.sum, SPH_SCALAR);
+    cloud.dst[REST] = column(cloud.rest, SPH_SCALAR);
     cloud.dst[FLOW] = column(cloud.flow, SPH_VECTOR);
     cloud.dst[LEAST] = column(cloud.least, SPH_SCALAR);
     cloud.dst[MOST] = column(cloud.most, SPH_SCALAR);
     cloud.param[0] = NAN;
     cloud.param[1] = 0.3;
     reset_sums();
-    make_kernel(dim, table);
+    make_kernel(dim, form);
 }
 
 static sph_batch batch(uint64_t first, uint64_t count, uint32_t same)
@@ -152,6 +176,7 @@ static sph_batch batch(uint64_t first, uint64_t count, uint32_t same)
                        .n_dst = N,
                        .n_src = SOURCES,
                        .begin = cloud.begin,
+                       .span = cloud.span,
                        .list = cloud.list,
                        .same = same,
                        .x_dst = column(cloud.x, SPH_VECTOR),
@@ -171,7 +196,7 @@ static sph_batch batch(uint64_t first, uint64_t count, uint32_t same)
 /* -- The plain loop -------- */
 
 struct sums {
-    double sum, flow[3], least, most;
+    double sum, rest, flow[3], least, most;
 };
 
 static double distance(int i, int j)
@@ -185,7 +210,7 @@ static double distance(int i, int j)
 
 static struct sums plain(int i, const sph_device_body *d, bool same)
 {
-    struct sums out = {5, {0, 0, 0}, 2, -1};
+    struct sums out = {5, -2, {0, 0, 0}, 2, -1};
 
     for (int j = 0; j < SOURCES; j++) {
         const double r = distance(i, j), q = r / cloud.h[i];
@@ -194,6 +219,9 @@ static struct sums plain(int i, const sph_device_body *d, bool same)
         if (r >= 2 * h || (same && i == j && !d->self))
             continue;
         out.sum += 0.3 * cloud.m[j] * (kernel_form_w(&cloud.kernel, q) + sqrt(4 - s * s));
+        out.rest += exp(-cloud.m[j]) - log(cloud.m[j]) * pow(cloud.m[j], q) - cbrt(q);
+        if (r > 0)
+            out.rest += kernel_form_dw(&cloud.kernel, q) / q * r * r / sqrt(1 + q);
         for (int c = 0; c < cloud.dim && r > 0; c++)
             out.flow[c] += kernel_form_dw(&cloud.kernel, q) / r *
                            (cloud.v[c * PLANE + i] - cloud.v[c * PLANE + j]);
@@ -212,10 +240,11 @@ static void near_to(double got, double want, const char *what, int i)
 static void compare(const sph_device_body *d, int first, int end, bool same)
 {
     for (int i = 0; i < PLANE; i++) {
-        struct sums want = {5, {0, 0, 0}, 2, -1};
+        struct sums want = {5, -2, {0, 0, 0}, 2, -1};
         if (i >= first && i < end)
             want = plain(i, d, same);
         near_to(cloud.sum[i], want.sum, "sum", i);
+        near_to(cloud.rest[i], want.rest, "rest", i);
         for (int c = 0; c < cloud.dim; c++)
             near_to(cloud.flow[c * PLANE + i], want.flow[c], "flow", i);
         near_to(cloud.least[i], want.least, "least", i);
@@ -261,10 +290,10 @@ static void run_and_compare(const sph_device_body *d, int dim)
     struct pair_body *p;
     sph_batch b;
 
-    make_cloud(dim, false);
+    make_cloud(dim, TWO_PIECES);
     p = built(&f, false);
-    for (int table = 0; table < 2; table++) {
-        make_cloud(dim, table);
+    for (enum form form = 0; form < N_FORMS; form++) {
+        make_cloud(dim, form);
         b = batch(0, N, 0);
         ran(p, &b, false);
         compare(d, 0, N, false);
@@ -312,7 +341,7 @@ static void absolute_terms(void **state)
 
     (void)state;
     need_device();
-    make_cloud(1, false);
+    make_cloud(1, TWO_PIECES);
     p = built(&f, true);
     b = batch(0, 8, 1);
     ran(p, &b, false);
@@ -362,7 +391,7 @@ static void wrong_bodies_and_batches(void **state)
     assert_int_equal(pair_body_build(&p, 1000, &f, 2, false, &e), -1);
     assert_string_equal(e.text, "there is no OpenCL device 1000");
 
-    make_cloud(2, false);
+    make_cloud(2, TWO_PIECES);
     p = built(&f, false);
     b = batch(0, N, 1);
     b.real = SPH_F32;

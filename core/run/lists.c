@@ -40,100 +40,6 @@ static bool in_frame(const struct run *r, size_t frame, size_t array)
 
 /* -- Are they still right? ---------------------------------------------------------------------- */
 
-/* The square of the largest displacement; a NaN must not pass for "has not moved". */
-static double displacement2(const struct run *r, const struct plan_array *a, int column,
-                            const double *reference)
-{
-    const long n = (long)a->p.n;
-    const int dim = r->plan->dim;
-    double most = 0.0;
-    int bad = 0;
-#pragma omp parallel for num_threads(r->threads) reduction(max                                     \
-                                                           : most) reduction(|                     \
-                                                                             : bad) if (n > 50000)
-    for (long i = 0; i < n; i++) {
-        double d2 = 0.0;
-        for (int c = 0; c < dim; c++) {
-            const double d = plane_of(a, column, c)[i] - reference[(long)c * n + i];
-            d2 += d * d;
-        }
-        bad |= !(d2 < INFINITY);
-        most = d2 > most ? d2 : most;
-    }
-    return bad ? NAN : most;
-}
-
-/* The reach of none has grown by more than the skin leaves. */
-static bool reach_holds(const struct run *r, const struct plan_array *a, const double *h0, double d)
-{
-    const double *h = a->p.column[a->smoothing].data;
-    const long n = (long)a->p.n;
-    int bad = 0;
-#pragma omp parallel for num_threads(r->threads) reduction(| : bad) if (n > 50000)
-    for (long i = 0; i < n; i++)
-        bad |= !(d + h[i] - h0[i] <= r->skin * h0[i]);
-    return !bad;
-}
-
-static bool frame_holds(const struct run *r, size_t frame)
-{
-    const size_t n = r->plan->n_array;
-    double d2 = 0.0;
-    if (r->plan->frame[frame].frozen)
-        return true;
-    for (size_t a = 0; a < n; a++) {
-        if (!in_frame(r, frame, a))
-            continue;
-        const double one = displacement2(r, &r->plan->array[a], place_in(r, frame, a),
-                                         r->reference[frame * n + a]);
-        if (!(one < INFINITY))
-            return false;
-        d2 = fmax(d2, one);
-    }
-    const double d = 2.0 * sqrt(d2) / support(r->plan);
-    for (size_t a = 0; a < n; a++) {
-        const struct plan_array *pa = &r->plan->array[a];
-        if (in_frame(r, frame, a) &&
-            !reach_holds(r, pa, r->reference[frame * n + a] + (size_t)r->plan->dim * pa->p.n, d))
-            return false;
-    }
-    return true;
-}
-
-static bool still_right(const struct run *r)
-{
-    if (!r->lists_made)
-        return false;
-    for (size_t f = 0; f < r->plan->n_frame; f++)
-        if (!frame_holds(r, f))
-            return false;
-    return true;
-}
-
-static int keep_reference(struct run *r, size_t frame, size_t array, struct error *e)
-{
-    const struct plan_array *pa = &r->plan->array[array];
-    const size_t n = pa->p.n, planes = (size_t)r->plan->dim + 1;
-    const size_t k = frame * r->plan->n_array + array;
-    if (r->plan->frame[frame].frozen || !in_frame(r, frame, array))
-        return 0;
-    if (r->reference_n[k] != n || !r->reference[k]) {
-        free(r->reference[k]);
-        r->reference[k] = malloc((n ? n : 1) * planes * sizeof(double));
-        if (!r->reference[k])
-            return error_memory(e, "positions of the lists", n * planes * sizeof(double));
-        r->reference_n[k] = n;
-    }
-    for (int c = 0; c < r->plan->dim; c++)
-        memcpy(r->reference[k] + (size_t)c * n, plane_of(pa, place_in(r, frame, array), c),
-               n * sizeof(double));
-    memcpy(r->reference[k] + (size_t)r->plan->dim * n, pa->p.column[pa->smoothing].data,
-           n * sizeof(double));
-    return 0;
-}
-
-/* -- Order, ghosts ------------------------------------------------------------------------------ */
-
 static struct cloud cloud_of(const struct run *r, size_t array, size_t frame, bool ghosts)
 {
     const struct plan_array *a = &r->plan->array[array];
@@ -144,6 +50,39 @@ static struct cloud cloud_of(const struct run *r, size_t array, size_t frame, bo
         cloud.x[c] = plane_of(a, place_in(r, frame, array), c);
     return cloud;
 }
+
+/* The arrays that take part in a frame: their clouds; how many. */
+static size_t clouds_of(const struct run *r, size_t frame, struct cloud *cloud)
+{
+    size_t n = 0;
+    for (size_t a = 0; a < r->plan->n_array; a++)
+        if (in_frame(r, frame, a))
+            cloud[n++] = cloud_of(r, a, frame, false);
+    return n;
+}
+
+static bool still_right(const struct run *r)
+{
+    bool right = r->lists_made;
+    for (size_t f = 0; right && f < r->plan->n_frame; f++) {
+        if (r->plan->frame[f].frozen)
+            continue;
+        const size_t n = clouds_of(r, f, r->cloud);
+        right = skin_holds(r->kept + f * r->plan->n_array, r->cloud, n, r->skin, r->threads);
+    }
+    return right;
+}
+
+static int keep_places(struct run *r, size_t frame, struct error *e)
+{
+    const size_t n = clouds_of(r, frame, r->cloud);
+    for (size_t k = 0; !r->plan->frame[frame].frozen && k < n; k++)
+        if (skin_keep(&r->kept[frame * r->plan->n_array + k], &r->cloud[k], r->threads, e))
+            return -1;
+    return 0;
+}
+
+/* -- Order, ghosts ------------------------------------------------------------------------------ */
 
 static int sort_array(struct run *r, size_t array, struct error *e)
 {
@@ -159,7 +98,8 @@ static int sort_array(struct run *r, size_t array, struct error *e)
     uint32_t *order = malloc(n * sizeof *order);
     if (!order)
         return error_memory(e, "the order of particles", n * sizeof *order);
-    int status = cell_order(&cloud, a->p.column[a->id].data, support(r->plan) * mean, order, e);
+    int status =
+        cell_order(&cloud, a->p.column[a->id].data, support(r->plan) * mean, r->threads, order, e);
     if (!status)
         status = particles_permute(&a->p, order, e);
     free(order);
@@ -234,7 +174,8 @@ static int make_list(struct run *r, size_t k, bool counted, struct error *e)
                         r->threads, e))
         return error_prefix(e, "neighbours of \"%s\"", r->plan->array[l->dst].p.name);
     if (counted && list->n_entry)
-        list->true_share = (double)group_list_count(list, &dst, &src) / (double)list->n_entry;
+        list->true_share =
+            (double)group_list_count(list, &dst, &src, r->threads) / (double)list->n_entry;
     return 0;
 }
 
@@ -250,9 +191,8 @@ static int make_lists(struct run *r, bool sorted, struct error *e)
             return -1;
     }
     for (size_t f = 0; f < r->plan->n_frame; f++)
-        for (size_t a = 0; a < r->plan->n_array; a++)
-            if (keep_reference(r, f, a, e))
-                return -1;
+        if (keep_places(r, f, e))
+            return -1;
     return 0;
 }
 
@@ -306,7 +246,7 @@ struct run_memory run_memory(const struct run *r)
         m.search = r->list[k].search_bytes > m.search ? r->list[k].search_bytes : m.search;
     }
     for (size_t k = 0; k < n * r->plan->n_frame; k++)
-        m.reference += r->reference[k] ? r->reference_n[k] * ((size_t)r->plan->dim + 1) * 8 : 0;
+        m.reference += skin_bytes(&r->kept[k]);
     for (size_t a = 0; a < n; a++)
         m.ghosts += r->ghosts[a].capacity * (sizeof(uint32_t) + sizeof(uint8_t));
     return m;

@@ -91,14 +91,14 @@ int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool 
     r->proposed = INFINITY;
     r->ghosts = calloc(n + 1, sizeof *r->ghosts);
     r->list = calloc(plan->n_list + 1, sizeof *r->list);
-    r->reference = calloc(n * plan->n_frame + 1, sizeof *r->reference);
-    r->reference_n = calloc(n * plan->n_frame + 1, sizeof *r->reference_n);
+    r->kept = calloc(n * plan->n_frame + 1, sizeof *r->kept);
+    r->cloud = calloc(n + 1, sizeof *r->cloud);
     r->stale = calloc(n + 1, sizeof *r->stale);
     r->mirror_old = calloc(n + 1, sizeof *r->mirror_old);
     r->h_low = calloc(2 * n + 1, sizeof *r->h_low);
     r->h_high = r->h_low + n;
     r->reduced = calloc(plan->n_reduction + 1, sizeof *r->reduced);
-    if (!r->ghosts || !r->list || !r->reference || !r->reference_n || !r->stale || !r->mirror_old ||
+    if (!r->ghosts || !r->list || !r->kept || !r->cloud || !r->stale || !r->mirror_old ||
         !r->h_low || !r->reduced)
         return error_memory(e, "the run", n * n * sizeof *r->list);
     for (size_t i = 0; i < plan->n_reduction; i++)
@@ -128,14 +128,14 @@ void run_free(struct run *r)
         if (r->mirror_old)
             free(r->mirror_old[a]);
     }
-    for (size_t k = 0; r->reference && k < n * r->plan->n_frame; k++)
-        free(r->reference[k]);
+    for (size_t k = 0; r->kept && k < n * r->plan->n_frame; k++)
+        skin_fini(&r->kept[k]);
     for (size_t k = 0; r->list && k < r->plan->n_list; k++)
         group_list_fini(&r->list[k]);
     free(r->ghosts);
     free(r->list);
-    free(r->reference);
-    free(r->reference_n);
+    free(r->kept);
+    free(r->cloud);
     free(r->stale);
     free(r->mirror_old);
     free(r->h_low);

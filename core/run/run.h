@@ -5,7 +5,7 @@
 #define RUN_RUN_H
 
 #include "domain/sides.h"
-#include "neighbours/neighbours.h"
+#include "neighbours/skin.h"
 #include "plan/plan.h"
 #include "registry/extension.h"
 #include <math.h>
@@ -36,9 +36,8 @@ struct run {
     /* lists.c */
     struct ghosts *ghosts;   /* [array] */
     struct group_list *list; /* [plan->n_list] */
-    double **
-        reference; /* [frame * n_array + array]: dim + 1 planes of places and h when the lists were made */
-    size_t *reference_n;
+    struct skin *kept; /* [frame * n_array + k]: of the frame's k-th array, when lists were made */
+    struct cloud *cloud;       /* [array]: room for clouds */
     bool **stale;              /* [array][column]: ghosts hold old values */
     bool **mirror_old;         /* [array][column]: the mirror does */
     double centre[3], quantum; /* of positions' mirrors: x = centre + quantum * a whole number */

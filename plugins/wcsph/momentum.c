@@ -22,7 +22,8 @@ static const sph_prop props[] = {
 #define SPH_LOOP_PARAM(P_) P_(alpha, ALPHA) P_(beta, BETA)
 #define SPH_LOOP_BODY "momentum.body.h"
 #define SPH_LOOP_F32
-#define SPH_LOOP_UNIFORM_H
+/* Runs seldom: rates.c stands in for it. */
+#define SPH_LOOP_ANY_KERNEL
 #define SPH_LOOP_DEVICE wcsph_momentum_device
 #include <sph/pair-loop.h>
 

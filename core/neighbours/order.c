@@ -16,6 +16,7 @@
 
 #define CELL_MOST 32 /* points of a cell that are sorted by x alone */
 #define GROUP SPH_LANES
+#define WIDE 1.5 /* the largest reach in units of the mean, from which they range widely */
 
 struct sorter {
     const struct cloud *c;
@@ -336,4 +337,16 @@ int cell_order(const struct cloud *points, const int64_t *id, double cell, int t
     status = sort_all(&s, cell, threads > 1 && n > 4096 ? (size_t)threads : 1, e);
     free(s.cell);
     return status;
+}
+
+double cell_best(const struct cloud *points)
+{
+    double sum = 0, most = 0, mean;
+
+    for (size_t i = 0; i < points->n; i++) {
+        sum += points->h[i];
+        most = points->h[i] > most ? points->h[i] : most;
+    }
+    mean = points->n > 0 ? sum / (double)points->n : 0;
+    return points->scale * mean * (points->dim == 3 ? 1 : 1.3) * (most > WIDE * mean ? 3 : 1);
 }

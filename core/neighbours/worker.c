@@ -13,7 +13,7 @@
 #include <string.h>
 
 #define BUNDLE_MOST 16    /* groups in a bundle */
-#define BUNDLE_SPREAD 5.0 /* half the diagonal of a bundle's box, in units of its smallest reach */
+#define BUNDLE_SPREAD 2.5 /* half the diagonal of a bundle's box, in units of its smallest reach */
 
 /* Destinations [first, last) that are looked after together. */
 struct stretch {

@@ -1,10 +1,10 @@
 /* neighbours/order.c -- puts points into linear cell order. Writes only the order.
  *
  * A counting sort into cells. Where the box is so empty that there would be more cells than
- * points, larger cells are taken first; a cell that holds many points is sorted into smaller
- * cells of its own, within the points' own bounds. So an outlier costs a level of recursion and
- * no memory, and the dense places of a cloud with variable smoothing length are as well ordered
- * as the thin ones. */
+ * points, larger cells are taken. A cell that holds many points is halved across its longest
+ * extent, and again, until there are eight in a part: close together in space, as the groups of
+ * neighbour lists should be. So an outlier costs time and no memory, and the dense places of a
+ * cloud with variable smoothing length are as well ordered as the thin ones. */
 #include "neighbours/neighbours.h"
 
 #include "neighbours/grid.h"
@@ -15,13 +15,13 @@
 #include <string.h>
 
 #define CELL_MOST 32 /* points of a cell that are sorted by x alone */
-#define CELL_AIM 16  /* points of a cell into which a full one is sorted */
-#define DEPTH_MOST 64
+#define GROUP SPH_LANES
+#define WIDE 1.5 /* the largest reach in units of the mean, from which they range widely */
 
 struct sorter {
     const struct cloud *c;
     const int64_t *id;
-    uint32_t *order, *scratch, *cell; /* [n] each: the order, its next state, the points' cells */
+    uint32_t *order, *cell; /* [n] each: the order, the points' cells */
 };
 
 /* -- Within a cell ----------------------------------------------------------------------------- */
@@ -53,144 +53,162 @@ static void insertion_sort(const struct sorter *s, uint32_t *order, size_t n)
     }
 }
 
-static void sift(const struct sorter *s, uint32_t *heap, size_t k, size_t n)
-{
-    uint32_t i = heap[k];
+/* -- A crowded cell ---------------------------------------------------------------------------- */
 
-    for (size_t child = 2 * k + 1; child < n; child = 2 * k + 1) {
-        if (child + 1 < n && before(s, heap[child], heap[child + 1])) {
-            child++;
-        }
-        if (!before(s, i, heap[child])) {
-            break;
-        }
-        heap[k] = heap[child];
-        k = child;
+/* A point of the crowd, by itself in memory. */
+struct member {
+    double x[3];
+    uint32_t i;
+};
+
+struct crowd {
+    const struct sorter *s;
+    struct member *member;
+    size_t first;   /* of the order: where the crowd stands */
+    bool turned[3]; /* axes along which it is walked from high to low */
+    uint64_t seed;
+};
+
+static bool member_before(const struct crowd *c, const struct member *a, const struct member *b,
+                          int axis)
+{
+    if (a->x[axis] < b->x[axis] || a->x[axis] > b->x[axis]) {
+        return (a->x[axis] < b->x[axis]) != c->turned[axis];
     }
-    heap[k] = i;
+    if (c->s->id && c->s->id[a->i] != c->s->id[b->i]) {
+        return c->s->id[a->i] < c->s->id[b->i];
+    }
+    return a->i < b->i;
 }
 
-static void sort_by_x(const struct sorter *s, uint32_t *order, size_t n)
+static void swap(struct member *a, struct member *b)
 {
-    if (n <= CELL_MOST) {
-        insertion_sort(s, order, n);
+    struct member t = *a;
+
+    *a = *b;
+    *b = t;
+}
+
+/* One of [first, last), in the middle of three that were drawn. What is drawn changes the time, not
+ * the result. */
+static size_t draw_pivot(struct crowd *c, size_t first, size_t last, int axis)
+{
+    size_t p[3];
+
+    for (int k = 0; k < 3; k++) {
+        c->seed = c->seed * 6364136223846793005ull + 1442695040888963407ull;
+        p[k] = first + (size_t)((c->seed >> 33) % (last - first));
+    }
+    for (int k = 0; k < 3; k++) {
+        size_t a = p[(k + 1) % 3], b = p[(k + 2) % 3];
+        bool above = member_before(c, &c->member[a], &c->member[p[k]], axis);
+        bool below = member_before(c, &c->member[p[k]], &c->member[b], axis);
+
+        if (above && below) {
+            return p[k];
+        }
+    }
+    return p[0];
+}
+
+/* Puts the first `want` along an axis, of [first, last), before the others (Hoare's FIND). */
+static void part(struct crowd *c, size_t first, size_t last, size_t want, int axis)
+{
+    struct member *m = c->member;
+
+    want += first;
+    while (last - first > 1) {
+        size_t low = first, pivot = draw_pivot(c, first, last, axis);
+
+        swap(&m[pivot], &m[last - 1]);
+        for (size_t k = first; k + 1 < last; k++) {
+            if (member_before(c, &m[k], &m[last - 1], axis)) {
+                swap(&m[k], &m[low++]);
+            }
+        }
+        swap(&m[low], &m[last - 1]);
+        if (want == low || want == low + 1) {
+            return;
+        }
+        if (want < low) {
+            last = low;
+        } else {
+            first = low + 1;
+        }
+    }
+}
+
+static int longest_axis(const struct crowd *c, size_t first, size_t last, double *extent)
+{
+    int axis = 0;
+
+    *extent = -1;
+    for (int a = 0; a < c->s->c->dim; a++) {
+        double lo = INFINITY, hi = -INFINITY;
+
+        for (size_t k = first; k < last; k++) {
+            double x = c->member[k].x[a];
+
+            lo = x < lo ? x : lo;
+            hi = x > hi ? x : hi;
+        }
+        if (hi - lo > *extent) {
+            *extent = hi - lo;
+            axis = a;
+        }
+    }
+    return axis;
+}
+
+/* Halves members [first, last) across their longest extent until they are in groups, which begin at
+ * multiples of eight of the whole order. */
+static void halve(struct crowd *c, size_t first, size_t last)
+{
+    size_t begin = (c->first + first) / GROUP, end = (c->first + last + GROUP - 1) / GROUP, middle;
+    double extent;
+    int axis = longest_axis(c, first, last, &extent);
+
+    if (end - begin < 2) {
+        /* By x, as in any cell. */
+        for (size_t k = first + 1; k < last; k++) {
+            for (size_t q = k; q > first && member_before(c, &c->member[q], &c->member[q - 1], 0);
+                 q--) {
+                swap(&c->member[q], &c->member[q - 1]);
+            }
+        }
         return;
     }
-    for (size_t k = n / 2; k-- > 0;) {
-        sift(s, order, k, n);
-    }
-    for (size_t last = n - 1; last > 0; last--) {
-        uint32_t i = order[last];
-
-        order[last] = order[0];
-        order[0] = i;
-        sift(s, order, 0, last);
-    }
+    middle = (begin + (end - begin + 1) / 2) * GROUP - c->first;
+    part(c, first, last, middle - first, axis);
+    halve(c, first, middle);
+    halve(c, middle, last);
 }
 
-/* -- Cells ------------------------------------------------------------------------------------- */
-
-/* The edge with about CELL_AIM points a cell, were they even; at most half the longest extent, so
- * that every level gets on. */
-static double crowded_edge(const double *lo, const double *hi, int dim, size_t n)
+/* Sorts points [first, first + n), which crowd one cell, into groups. Cells are walked upwards along
+ * x, and along the others in turns, so that the group at the border of two cells is close together
+ * too. */
+static int sort_crowd(struct sorter *s, size_t first, size_t n, bool turn)
 {
-    double longest = 0, volume = CELL_AIM / (double)n;
-    int axes = 0;
+    struct crowd c = {.s = s, .first = first, .turned = {false, turn, turn}, .seed = first};
 
-    for (int a = 0; a < dim; a++) {
-        longest = fmax(longest, hi[a] - lo[a]);
-    }
-    for (int a = 0; a < dim; a++) {
-        double extent = hi[a] - lo[a];
-
-        if (extent > 1e-3 * longest) {
-            volume *= extent / longest;
-            axes++;
-        }
-    }
-    return fmin(longest * pow(volume, 1.0 / axes), longest / 2);
-}
-
-/* Sorts points [first, first + n) of the order into the grid's cells; ends[k] is then where cell k
- * ends. Stable. */
-static void count_sort(struct sorter *s, const struct grid *g, size_t first, size_t n,
-                       uint32_t *ends)
-{
-    uint32_t *order = s->order + first, *scratch = s->scratch + first, *cell = s->cell + first;
-    uint32_t sum = 0;
-
-    memset(ends, 0, g->n * sizeof *ends);
-    for (size_t k = 0; k < n; k++) {
-        cell[k] = (uint32_t)grid_cell(g, s->c->x, order[k]);
-        ends[cell[k]]++;
-    }
-    for (size_t k = 0; k < g->n; k++) {
-        uint32_t count = ends[k];
-
-        ends[k] = sum;
-        sum += count;
-    }
-    for (size_t k = 0; k < n; k++) {
-        scratch[ends[cell[k]]++] = order[k];
-    }
-    memcpy(order, scratch, n * sizeof *order);
-}
-
-/* Bounds of points [first, first + n) of the order. */
-static void bounds(const struct sorter *s, size_t first, size_t n, double *lo, double *hi)
-{
-    for (int a = 0; a < s->c->dim; a++) {
-        lo[a] = INFINITY;
-        hi[a] = -INFINITY;
-        for (size_t k = first; k < first + n; k++) {
-            double x = s->c->x[a][s->order[k]];
-
-            lo[a] = x < lo[a] ? x : lo[a];
-            hi[a] = x > hi[a] ? x : hi[a];
-        }
-    }
-}
-
-static double longest_extent(const struct sorter *s, const double *lo, const double *hi)
-{
-    double longest = 0;
-
-    for (int a = 0; a < s->c->dim; a++) {
-        longest = fmax(longest, hi[a] - lo[a]);
-    }
-    return longest;
-}
-
-/* Sorts points [first, first + n), which crowd one cell. */
-static int sort_crowd(struct sorter *s, size_t first, size_t n, int depth)
-{
-    double lo[3], hi[3];
-    struct grid g;
-    uint32_t *ends;
-    size_t begin = 0;
-    int status = 0;
-
-    if (n <= CELL_MOST || depth > DEPTH_MOST) {
-        sort_by_x(s, s->order + first, n);
-        return 0;
-    }
-    bounds(s, first, n, lo, hi);
-    if (!(longest_extent(s, lo, hi) > 0)) {
-        sort_by_x(s, s->order + first, n);
-        return 0;
-    }
-    grid_init(&g, lo, hi, s->c->dim, crowded_edge(lo, hi, s->c->dim, n), n);
-    ends = malloc(g.n * sizeof *ends);
-    if (!ends) {
+    c.member = malloc(n * sizeof *c.member);
+    if (!c.member) {
         return -1;
     }
-    count_sort(s, &g, first, n, ends);
-    for (size_t k = 0; k < g.n && status == 0; k++) {
-        status = sort_crowd(s, first + begin, ends[k] - begin, depth + 1);
-        begin = ends[k];
+    for (size_t k = 0; k < n; k++) {
+        uint32_t i = s->order[first + k];
+
+        c.member[k].i = i;
+        for (int a = 0; a < s->c->dim; a++) {
+            c.member[k].x[a] = s->c->x[a][i];
+        }
     }
-    free(ends);
-    return status;
+    halve(&c, 0, n);
+    for (size_t k = 0; k < n; k++) {
+        s->order[first + k] = c.member[k].i;
+    }
+    free(c.member);
+    return 0;
 }
 
 /* -- All points, on several threads ------------------------------------------------------------ */
@@ -223,8 +241,8 @@ static void all_bounds(const struct sorter *s, double *lo, double *hi, size_t th
     }
 }
 
-/* Like count_sort, of all points as they stand: each thread counts and moves a share of them.
- * count: [threads][g->n], of which the last thread's are then the ends of the cells. */
+/* Sorts all points into the cells, in the order in which they stand: each thread counts and moves a
+ * share of them. count: [threads][g->n], of which the last thread's are then the ends of the cells. */
 static void share_sort(struct sorter *s, const struct grid *g, size_t threads, uint32_t *count)
 {
     size_t n = s->c->n;
@@ -272,7 +290,7 @@ static int sort_all(struct sorter *s, double edge, size_t threads, struct error 
 
     all_bounds(s, lo, hi, threads);
     if (!(edge > 0)) {
-        edge = longest_extent(s, lo, hi) > 0 ? crowded_edge(lo, hi, s->c->dim, s->c->n) : 1;
+        edge = 0; /* as many cells as can be */
     }
     grid_init(&g, lo, hi, s->c->dim, edge, s->c->n);
     while (threads > 1 && threads * g.n > 4 * s->c->n) {
@@ -289,9 +307,11 @@ static int sort_all(struct sorter *s, double edge, size_t threads, struct error 
               : status)
     for (size_t k = 0; k < g.n; k++) {
         size_t begin = k ? ends[k - 1] : 0;
-        int failed = sort_crowd(s, begin, ends[k] - begin, 1);
-
-        status = failed < status ? failed : status;
+        if (ends[k] - begin <= CELL_MOST) {
+            insertion_sort(s, s->order + begin, ends[k] - begin);
+        } else if (sort_crowd(s, begin, ends[k] - begin, k % ((size_t)g.last[0] + 1) % 2) != 0) {
+            status = -1;
+        }
     }
     free(count);
     return status == 0 ? 0 : error_memory(e, "sorting particles into cells", g.n * sizeof *count);
@@ -310,12 +330,23 @@ int cell_order(const struct cloud *points, const int64_t *id, double cell, int t
     if (n == 0) {
         return 0;
     }
-    s.scratch = malloc(2 * n * sizeof *s.scratch);
-    if (!s.scratch) {
-        return error_memory(e, "sorting particles", 2 * n * sizeof *s.scratch);
+    s.cell = malloc(n * sizeof *s.cell);
+    if (!s.cell) {
+        return error_memory(e, "sorting particles", n * sizeof *s.cell);
     }
-    s.cell = s.scratch + n;
     status = sort_all(&s, cell, threads > 1 && n > 4096 ? (size_t)threads : 1, e);
-    free(s.scratch);
+    free(s.cell);
     return status;
+}
+
+double cell_best(const struct cloud *points)
+{
+    double sum = 0, most = 0, mean;
+
+    for (size_t i = 0; i < points->n; i++) {
+        sum += points->h[i];
+        most = points->h[i] > most ? points->h[i] : most;
+    }
+    mean = points->n > 0 ? sum / (double)points->n : 0;
+    return points->scale * mean * (points->dim == 3 ? 1 : 1.3) * (most > WIDE * mean ? 3 : 1);
 }

@@ -138,31 +138,38 @@ static struct cloud cloud_of(const struct bench *b, const struct particles *p, b
     return cloud;
 }
 
+/* A copy that is watched, in place of an earlier one. NULL: no memory. */
+static void *watched_copy(void *earlier, const void *data, size_t bytes, const char *what)
+{
+    void *copy = watch_memory(bytes, what);
+
+    watch_release(earlier);
+    if (copy && bytes)
+        memcpy(copy, data, bytes);
+    watch_seal(copy);
+    return copy;
+}
+
 static int make_list(struct bench *b, int k, struct error *e)
 {
     const struct cloud dst = cloud_of(b, &b->own, false);
     const struct cloud src = cloud_of(b, k ? &b->other : &b->own, true);
     struct group_list *list = &b->list[k];
-    size_t entries;
 
-    if (group_list_make(list, &dst, &src, b->spec->reach == SPH_SYMMETRIC, SKIN, 1, e))
+    if (group_list_make(list, &dst, &src, b->spec->reach == SPH_SYMMETRIC, SKIN, NULL, 1, e))
         return -1;
-    entries = list->begin[list->n_group];
-    watch_release(b->begin[k]);
-    watch_release(b->source[k]);
-    b->begin[k] = watch_memory((list->n_group + 1) * sizeof(uint64_t), "batch->begin");
-    b->source[k] = watch_memory(entries * sizeof(uint32_t), "batch->list");
-    if (!b->begin[k] || !b->source[k])
-        return error_memory(e, "a neighbour list", entries * sizeof(uint32_t));
-    memcpy(b->begin[k], list->begin, (list->n_group + 1) * sizeof(uint64_t));
-    if (entries)
-        memcpy(b->source[k], list->source, entries * sizeof(uint32_t));
-    watch_seal(b->begin[k]);
-    watch_seal(b->source[k]);
+    b->begin[k] = watched_copy(b->begin[k], list->begin, (list->n_group + 1) * sizeof(*list->begin),
+                               "batch->begin");
+    b->span[k] =
+        watched_copy(b->span[k], list->span, list->n_span * sizeof(*list->span), "batch->span");
+    b->step[k] = watched_copy(b->step[k], list->step, (size_t)list->n_entry * sizeof(*list->step),
+                              "batch->list");
+    if (!b->begin[k] || !b->span[k] || !b->step[k])
+        return error_memory(e, "a neighbour list", (size_t)list->n_entry * sizeof(*list->step));
     return 0;
 }
 
-static int make_lists(struct bench *b, struct error *e)
+int bench_lists(struct bench *b, struct error *e)
 {
     if (b->spec->shape != SPH_PAIR)
         return 0;
@@ -174,7 +181,7 @@ int bench_refresh(struct bench *b, struct error *e)
     for (size_t c = 0; c < b->own.n_column; c++)
         if (b->own_access[c] == 2 && b->own.n_ghost)
             ghosts_refresh(&b->ghosts, &b->box, &b->own, (int)c);
-    return b->h >= 0 && b->own_access[b->h] == 2 ? make_lists(b, e) : 0;
+    return b->h >= 0 && b->own_access[b->h] == 2 ? bench_lists(b, e) : 0;
 }
 
 /* -- The whole -------- */
@@ -204,7 +211,7 @@ static int make_particles(struct bench *b, struct error *e)
     }
     poison(&b->own);
     poison(&b->other);
-    return make_lists(b, e);
+    return bench_lists(b, e);
 }
 
 static int make_views(struct bench *b, struct error *e)
@@ -383,7 +390,8 @@ void bench_sources(const struct bench *b, sph_batch *batch, int k)
     batch->n_src = p->n + p->n_ghost;
     batch->same = k == 0;
     batch->begin = b->begin[k];
-    batch->list = b->source[k];
+    batch->span = b->span[k];
+    batch->list = b->step[k];
     batch->x_src = particles_column(p, b->x);
     batch->h_src = particles_column(p, b->h);
 }

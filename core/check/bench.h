@@ -53,7 +53,8 @@ struct bench {
     struct watched watched[3];
     struct group_list list[2]; /* from own, from other */
     uint64_t *begin[2];        /* the lists in watched memory */
-    uint32_t *source[2];
+    sph_span *span[2];
+    uint16_t *step[2];
     sph_kernel_form kernel;
     sph_column *dst, *src[2];
     double *param;
@@ -67,7 +68,9 @@ int bench_make(struct bench *b, const struct subject *s, const struct pass_spec 
  * bench stays where it is until the child ends. */
 void bench_close(struct bench *b);
 
-/* The lists made anew after h has changed, and what is written copied to the ghosts. */
+/* The lists made anew. */
+int bench_lists(struct bench *b, struct error *e);
+/* Likewise after h has changed, and what is written copied to the ghosts. */
 int bench_refresh(struct bench *b, struct error *e);
 /* Columns as declared (true), or all open to us. */
 void bench_protect(struct bench *b, bool on);

@@ -29,6 +29,7 @@ void check_calls(const struct subject *s);        /* check_calls.c */
 void check_kept(const struct subject *s);         /* check_kept.c */
 void check_conservation(const struct subject *s); /* check_conservation.c */
 void check_recipe(const struct subject *s);       /* check_recipe.c */
+void check_paths(const struct subject *s);        /* check_paths.c */
 void check_device(const struct subject *s);       /* check_device.c */
 
 /* table.c: what of an item is called: the function, or run and inverse. At most 2; returns how

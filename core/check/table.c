@@ -6,6 +6,8 @@
 
 /* A device's compiler may take its time over each body, the first time. */
 #define DEVICE_PATIENCE 10
+/* One source at a time is slow. */
+#define PATHS_PATIENCE 4
 
 const struct check check_table[] = {
     {"declared", "what the descriptors say, and leave unsaid", CHECK_ALL, check_declared, false, 1},
@@ -23,6 +25,8 @@ const struct check check_table[] = {
      check_conservation, true, 1},
     {"recipe", "the steps' functions, the kernel and the integrator are there",
      CHECK_KIND(KIND_SCHEME) | CHECK_KIND(KIND_BOUNDARY), check_recipe, false, 1},
+    {"paths", "the plain loop, vectors of every instruction set, and floats give the same",
+     CHECK_KIND(KIND_FUNCTION), check_paths, true, PATHS_PATIENCE},
     {"device", "native and device bodies", CHECK_KIND(KIND_FUNCTION), check_device, true,
      DEVICE_PATIENCE},
 };

@@ -102,10 +102,11 @@ SPH_INLINE R SPH_OF_ISA(sph_load_)(const T *p)
 SPH_INLINE R SPH_OF_ISA(sph_gather_)(const T *p, const uint32_t *k)
 {
 #if SPH_WIDTH == 2
-    return (R){p[k[0]], p[k[1]]};
+    const R out = {p[k[0]], p[k[1]]};
 #else
-    return (R){p[k[0]], p[k[1]], p[k[2]], p[k[3]]};
+    const R out = {p[k[0]], p[k[1]], p[k[2]], p[k[3]]};
 #endif
+    return out;
 }
 
 /* x - p[k[0]], x - p[k[1]] ... of positions. */

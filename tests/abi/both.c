@@ -23,6 +23,8 @@ static const sph_prop props[] = {
 #define SPH_LOOP_MAX(S) S(largest, LARGEST)
 #define SPH_LOOP_PARAM(P) P(share, 0)
 #define SPH_LOOP_REACH SPH_GATHER
+#define SPH_LOOP_F32
+#define SPH_LOOP_UNIFORM_H
 #define SPH_LOOP_DEVICE sweep_device
 #define SPH_LOOP_BODY "both.body.h"
 #include <sph/pair-loop.h>
@@ -38,6 +40,7 @@ static sph_status init(const sph_host *host)
 {
     function.size = (uint32_t)sizeof(function);
     function.shape = SPH_PAIR;
+    function.reals = SPH_F64 | SPH_F32;
     function.item = &item;
     function.run = sweep;
     function.reach = SPH_GATHER;

@@ -1,4 +1,5 @@
 /* trespass.c -- functions that do what they do not declare, for the audit. */
+#include "../walk.h"
 #include <sph/plugin.h>
 
 #define SIZE(type) ((uint32_t)sizeof(type))
@@ -96,8 +97,8 @@ __attribute__((no_sanitize("undefined"))) static sph_status pair_run(const sph_b
 {
     const double *m = plane(&b->src[0]);
     for (uint64_t i = b->first; i < b->first + b->count; i++)
-        for (uint64_t k = b->begin[i / SPH_LANES]; k < b->begin[i / SPH_LANES + 1]; k++)
-            plane(&b->dst[1])[i] += m[b->list[k]];
+        for (struct walk w = walk_begin(b, i); walk_next(&w);)
+            plane(&b->dst[1])[i] += m[w.j];
     return SPH_OK;
 }
 

@@ -170,7 +170,7 @@ static int measure(const struct registry *r, uint64_t chunk, int timed, struct e
     struct cloud cloud;
     const double alpha = 0.1;
 
-    if (!run || fill(f, &cloud, e) || group_list_make(&list, &cloud, &cloud, true, 0.1, 1, e))
+    if (!run || fill(f, &cloud, e) || group_list_make(&list, &cloud, &cloud, true, 0.1, NULL, 1, e))
         return -1;
     const sph_column dst[COLUMNS] = {column(f->m, 1), column(f->rho, 1), column(f->p, 1),
                                      column(f->v, 3), column(f->out, 1), column(f->out + PLANE, 3)};
@@ -182,7 +182,8 @@ static int measure(const struct registry *r, uint64_t chunk, int timed, struct e
                          .n_dst = N,
                          .n_src = N,
                          .begin = list.begin,
-                         .list = list.source,
+                         .span = list.span,
+                         .list = list.step,
                          .same = 1,
                          .x_dst = column(f->x, 3),
                          .x_src = column(f->x, 3),
@@ -203,7 +204,7 @@ static int measure(const struct registry *r, uint64_t chunk, int timed, struct e
                          f->out[N / 2]);
     printf("%d particles, %.1f neighbours each, %.1f in a group's list\n", N,
            (double)group_list_count(&list, &cloud, &cloud) / N,
-           (double)list.begin[list.n_group] / (double)list.n_group);
+           (double)group_list_entries(&list, 0, list.n_group) / (double)list.n_group);
     if (timed)
         compare_times(f, run, &b);
     group_list_fini(&list);

@@ -1,4 +1,5 @@
 /* wrong_pair.c -- pair functions, each with one fault, and one without. */
+#include "../walk.h"
 #include "wrong.h"
 
 #include <math.h>
@@ -27,15 +28,15 @@ static sph_status add_up(const sph_batch *b)
     const double *m = plane(&b->src[0]);
 
     EACH(i, b)
-    for (uint64_t k = b->begin[i / SPH_LANES]; k < b->begin[i / SPH_LANES + 1]; k++) {
+    for (struct walk w = walk_begin(b, i); walk_next(&w);) {
         double r2 = 0;
         for (uint32_t c = 0; c < b->dim; c++) {
             const double d = plane(&b->x_dst)[c * b->x_dst.plane + i] -
-                             plane(&b->x_src)[c * b->x_src.plane + b->list[k]];
+                             plane(&b->x_src)[c * b->x_src.plane + w.j];
             r2 += d * d;
         }
         if (r2 < 4 * plane(&b->h_dst)[i] * plane(&b->h_dst)[i])
-            plane(&b->dst[1])[i] += m[b->list[k]];
+            plane(&b->dst[1])[i] += m[w.j];
     }
     return SPH_OK;
 }
@@ -54,8 +55,8 @@ FUNCTION(own, "reads-own-mass", props, add_up, own_mass);
 static sph_status sources_density(const sph_batch *b)
 {
     EACH(i, b)
-    for (uint64_t k = b->begin[i / SPH_LANES]; k < b->begin[i / SPH_LANES + 1]; k++)
-        plane(&b->dst[1])[i] += plane(&b->src[0])[b->list[k]];
+    for (struct walk w = walk_begin(b, i); walk_next(&w);)
+        plane(&b->dst[1])[i] += plane(&b->src[0])[w.j];
     return SPH_OK;
 }
 FUNCTION(sources, "reads-sources-density", own_props, sources_density, NULL);

@@ -3,6 +3,7 @@
 
 #include "motion.h"
 
+#include "../walk.h"
 #include <math.h>
 #include <string.h>
 
@@ -166,7 +167,7 @@ FUNCTION(shade, "shade", SPH_NO_LIST) = {.size = SIZE(sph_function),
 
 /* -- Pair functions ------------------------------------------------------------------------------ */
 
-static double distance(const sph_batch *b, uint64_t i, uint32_t j)
+static double distance(const sph_batch *b, uint64_t i, uint64_t j)
 {
     double r2 = 0;
     for (uint32_t c = 0; c < b->dim; c++) {
@@ -184,8 +185,8 @@ static double weight(double r, double reach)
 static sph_status gather_run(const sph_batch *b)
 {
     for (uint64_t i = b->first; i < b->first + b->count; i++)
-        for (uint64_t k = b->begin[i / SPH_LANES]; k < b->begin[i / SPH_LANES + 1]; k++) {
-            const uint32_t j = b->list[k];
+        for (struct walk w = walk_begin(b, i); walk_next(&w);) {
+            const uint64_t j = w.j;
             const double f = weight(distance(b, i, j), MOTION_SUPPORT * at(&b->h_dst, 0)[i]);
             const double mf = at(&b->src[0], 0)[j] * f;
             at(&b->dst[3], 0)[i] += mf * at(&b->src[1], 0)[j];
@@ -210,8 +211,8 @@ FUNCTION(gather, "gather", SPH_NO_LIST) = {.size = SIZE(sph_function),
 static sph_status wide_run(const sph_batch *b)
 {
     for (uint64_t i = b->first; i < b->first + b->count; i++)
-        for (uint64_t k = b->begin[i / SPH_LANES]; k < b->begin[i / SPH_LANES + 1]; k++) {
-            const uint32_t j = b->list[k];
+        for (struct walk w = walk_begin(b, i); walk_next(&w);) {
+            const uint64_t j = w.j;
             const double h = fmax(at(&b->h_dst, 0)[i], at(&b->h_src, 0)[j]);
             at(&b->dst[2], 0)[i] += at(&b->src[0], 0)[j] * at(&b->src[1], 0)[j] *
                                     weight(distance(b, i, j), MOTION_SUPPORT * h);
@@ -234,9 +235,8 @@ FUNCTION(wide, "gather-both", SPH_NO_LIST) = {.size = SIZE(sph_function),
 static sph_status widen_run(const sph_batch *b)
 {
     for (uint64_t i = b->first; i < b->first + b->count; i++)
-        for (uint64_t k = b->begin[i / SPH_LANES]; k < b->begin[i / SPH_LANES + 1]; k++)
-            at(&b->dst[1], 0)[i] +=
-                distance(b, i, b->list[k]) < MOTION_SUPPORT * at(&b->dst[0], 0)[i];
+        for (struct walk w = walk_begin(b, i); walk_next(&w);)
+            at(&b->dst[1], 0)[i] += distance(b, i, w.j) < MOTION_SUPPORT * at(&b->dst[0], 0)[i];
     return SPH_OK;
 }
 

@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "clouds.h"
+#include "neighbours/skin.h"
 
 #include <stdio.h>
 #include <time.h>
@@ -69,7 +70,7 @@ static void managers(const struct cloud *c, bool symmetric)
     for (size_t k = 0; (m = neighbour_manager_at(k)) != NULL; k++) {
         struct group_list l = {0};
         double one = build(&l, c, symmetric, m, 1), two = build(&l, c, symmetric, m, 2);
-        double pairs = (double)group_list_count(&l, c, c, 1);
+        double pairs = (double)group_list_count(&l, c, c, 2);
 
         printf("  %-7s %13.1f %11.1f %14.1f %16.1f %8.1f %10.1f\n", m->name, one, two,
                (double)l.visited / pairs, (double)l.candidates / pairs,
@@ -117,9 +118,34 @@ static void count(const struct cloud *c, bool symmetric)
     group_list_fini(&l);
 }
 
-static void run(const char *title, struct owned *o, double cell, bool symmetric)
+static void skin(const struct cloud *c)
 {
-    double shuffled[2], sorted[2];
+    double keep[2][ROUNDS], look[2][ROUNDS];
+    struct skin s = {0};
+    struct error e;
+    bool holds = true;
+
+    for (int k = 0; k < ROUNDS; k++) {
+        for (int threads = 1; threads <= 2; threads++) {
+            double begin = now(), middle;
+
+            check(skin_keep(&s, c, threads, &e), &e);
+            middle = now();
+            holds = skin_holds(&s, c, 1, SKIN, threads) && holds;
+            keep[threads - 1][k] = 1e9 * (middle - begin) / (double)c->n;
+            look[threads - 1][k] = 1e9 * (now() - middle) / (double)c->n;
+        }
+    }
+    printf("  places kept in %.1f B/particle: %.1f ns/particle, 2 threads %.1f; looked at again "
+           "%.1f, %.1f%s\n",
+           (double)skin_bytes(&s) / (double)c->n, median(keep[0]), median(keep[1]), median(look[0]),
+           median(look[1]), holds ? "" : " MISS");
+    skin_fini(&s);
+}
+
+static void run(const char *title, struct owned *o, bool symmetric)
+{
+    double shuffled[2], sorted[2], cell = cell_best(&o->c);
 
     cloud_shuffle(o, 5);
     for (int k = 0; k < 2; k++) {
@@ -134,31 +160,22 @@ static void run(const char *title, struct owned *o, double cell, bool symmetric)
            "%.1f\n",
            shuffled[0], shuffled[1], sorted[0], sorted[1]);
     count(&o->c, symmetric);
+    skin(&o->c);
     managers(&o->c, symmetric);
-}
-
-static double mean_reach(const struct owned *o)
-{
-    double sum = 0;
-
-    for (size_t i = 0; i < o->c.n; i++) {
-        sum += o->h[i];
-    }
-    return o->c.scale * sum / (double)o->c.n;
 }
 
 int main(void)
 {
     struct owned o = cloud_lattice(3, 63, 1);
 
-    run("3D", &o, 2.6, true);
+    run("3D", &o, true);
     cloud_free(&o);
     o = cloud_lattice(2, 500, 1);
-    run("2D", &o, 1.3 * 2.6, true);
+    run("2D", &o, true);
     cloud_free(&o);
     for (int symmetric = 0; symmetric < 2; symmetric++) {
         o = cloud_clump(3, 58, 1);
-        run("3D, h ranges over a factor of 100", &o, mean_reach(&o), symmetric);
+        run("3D, h ranges over a factor of 100", &o, symmetric);
         cloud_free(&o);
     }
     return 0;

@@ -65,8 +65,8 @@ static void managers(const struct cloud *c, bool symmetric)
     const struct neighbour_manager *m;
     double n = (double)c->n;
 
-    printf(
-        "  manager   ns/particle   2 threads   visited/true   distances/true   list B   search B\n");
+    printf("  manager   ns/particle   2 threads   visited/true   distances/true   list B   "
+           "search B\n");
     for (size_t k = 0; (m = neighbour_manager_at(k)) != NULL; k++) {
         struct group_list l = {0};
         double one = build(&l, c, symmetric, m, 1), two = build(&l, c, symmetric, m, 2);

@@ -122,8 +122,8 @@ static inline struct owned cloud_lattice(int dim, size_t m, uint64_t seed)
     return o;
 }
 
-/* Such a lattice's points in a ball, drawn towards its centre, h following the spacing: over 100 times
- * as wide at the edge as in the middle. */
+/* Such a lattice's points in a ball, drawn towards its centre, h following the spacing: over 100
+ * times as wide at the edge as in the middle. */
 static inline struct owned cloud_clump(int dim, size_t m, uint64_t seed)
 {
     struct owned o = cloud_lattice(dim, m, seed);

@@ -1,5 +1,6 @@
-/* tests/unit/test_managers.c -- what the managers of neighbour lists promise beyond right lists, which
- * test_neighbours.c is about: names, work, memory, and the same bits for any number of threads. */
+/* tests/unit/test_managers.c -- what the managers of neighbour lists promise beyond right lists,
+ * which test_neighbours.c is about: names, work, memory, and the same bits for any number of
+ * threads. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,7 +1,7 @@
-/* tests/bench/neighbours.c -- what neighbour lists cost: time, memory and work of each manager, for
- * even particles and for a clump with smoothing lengths that range over a factor of 100. Lists are
- * made again, as in a run; of five times the median is shown, processor time of one thread, wall clock
- * time of two. */
+/* tests/bench/neighbours.c -- what neighbour lists cost: time, memory and work of each manager,
+ * for even particles and for a clump with smoothing lengths that range over a factor of 100. Lists
+ * are made again, as in a run; of five times the median is shown, processor time of one thread,
+ * wall clock time of two. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

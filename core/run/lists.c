@@ -91,15 +91,11 @@ static int sort_array(struct run *r, size_t array, struct error *e)
     if (n < 2)
         return 0;
     const struct cloud cloud = cloud_of(r, array, 0, false);
-    double mean = 0.0;
-    for (size_t i = 0; i < n; i++)
-        mean += cloud.h[i];
-    mean /= (double)n;
     uint32_t *order = malloc(n * sizeof *order);
     if (!order)
         return error_memory(e, "the order of particles", n * sizeof *order);
     int status =
-        cell_order(&cloud, a->p.column[a->id].data, support(r->plan) * mean, r->threads, order, e);
+        cell_order(&cloud, a->p.column[a->id].data, cell_best(&cloud), r->threads, order, e);
     if (!status)
         status = particles_permute(&a->p, order, e);
     free(order);

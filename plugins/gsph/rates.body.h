@@ -96,5 +96,5 @@ const R dw_j = sph_dw_q(K, r *hinv_j) * sph_ipow(hinv_j, DIM + 2);
 const R flux = m_j * p_star * (volume_i * dw_i + volume_j * dw_j) / (rho_i * rho_j);
 for (int a = 0; a < DIM; a++)
     sph_sub(force[a], flux *dx[a]);
-sph_sub(power, flux *u_star * r);
+sph_sub(power, flux *u_star *r);
 sph_take_max(fastest, signal);

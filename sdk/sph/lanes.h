@@ -141,16 +141,22 @@ SPH_INLINE R SPH_OF_ISA(sph_step_)(double x, const double *p, const uint32_t *k,
 #define SPH_MM(name) (R) _mm256_##name##_pd
 #define SPH_V(a) ((__m256d)(a))
 #else
-#define SPH_MM(name) (R) _mm512_##name##_pd
+#define SPH_MM(name) (R) _mm512_maskz_##name##_pd
 #define SPH_V(a) ((__m512d)(a))
 #endif
+#if defined(SPH_AVX512_WORDS) && !SPH_F32_WORDS
+#define SPH_ALL 0xff,
+#else
+#define SPH_ALL
+#endif
+/* Of 8 doubles the form with a mask: of the plain one gcc says that it uses what is not set. */
 SPH_INLINE R SPH_OF_ISA(sph_max_)(R a, R b)
 {
-    return SPH_MM(max)(SPH_V(a), SPH_V(b));
+    return SPH_MM(max)(SPH_ALL SPH_V(a), SPH_V(b));
 }
 SPH_INLINE R SPH_OF_ISA(sph_min_)(R a, R b)
 {
-    return SPH_MM(min)(SPH_V(a), SPH_V(b));
+    return SPH_MM(min)(SPH_ALL SPH_V(a), SPH_V(b));
 }
 #else
 SPH_INLINE R SPH_OF_ISA(sph_max_)(R a, R b)
@@ -387,6 +393,7 @@ SPH_INLINE R SPH_OF_ISA(sph_dw_q_)(const FORM *f, R q, int shape)
 
 #undef SPH_MM
 #undef SPH_V
+#undef SPH_ALL
 #undef T
 #undef R
 #undef B

@@ -308,8 +308,8 @@ static int reset(void **state)
 static void begin(struct run *run, struct rig *rig)
 {
     struct error e = {0};
-    if (run_init(run, &rig->plan, 2, SPH_PATH_BEST, false, &e) || run_passes(run, MOMENT_START, &e) ||
-        run_passes(run, MOMENT_EVALUATE, &e))
+    if (run_init(run, &rig->plan, 2, SPH_PATH_BEST, false, &e) ||
+        run_passes(run, MOMENT_START, &e) || run_passes(run, MOMENT_EVALUATE, &e))
         fail_msg("%s", e.text);
 }
 

@@ -321,7 +321,8 @@ static void test_several_sources(void **state)
         steps(&m, 0.004, 1);
     }
     assert_true(m.run.cost.list_builds > 3);
-    assert_int_equal(plan_pair(&m.rig.plan, 1, 0)->reach, SPH_GATHER); /* two from one: only gather asks */
+    assert_int_equal(plan_pair(&m.rig.plan, 1, 0)->reach,
+                     SPH_GATHER); /* two from one: only gather asks */
     end(&m);
 }
 

@@ -20,7 +20,7 @@ enum {
     KEY_UNTIL = 256,
     KEY_STEPS,
     KEY_DEVICE,
-    KEY_PRECISION,
+    KEY_PATH,
     KEY_DRY,
     KEY_AUDIT,
     KEY_STRICT
@@ -33,7 +33,10 @@ static const struct argp_option options[] = {
     {"until", KEY_UNTIL, "T", 0, "End at time T instead of the scene's", 0},
     {"steps", KEY_STEPS, "N", 0, "End after N steps", 0},
     {"device", KEY_DEVICE, "cpu", 0, "Where to compute; this version: cpu", 0},
-    {"precision", KEY_PRECISION, "double", 0, "Of the pair arithmetic; this version: double", 0},
+    {"path", KEY_PATH, "WORD", 0,
+     "How pair loops run, to compare: best (default), reference (a pair at a time, in double), "
+     "extended (in long double), base, avx2, avx512",
+     0},
     {"dry-run", KEY_DRY, NULL, 0,
      "Do everything but the steps: check, make the particles, show the plan", 0},
     {"strict", KEY_STRICT, NULL, 0, "Fix the order of every sum (so it is in this version)", 0},
@@ -49,6 +52,7 @@ struct arguments {
     int threads;
     double until;
     uint64_t steps;
+    uint32_t path;
     bool dry, audit, quiet, verbose;
 };
 
@@ -70,6 +74,18 @@ static void only(struct argp_state *state, const char *option, const char *text,
     if (strcmp(text, here) != 0)
         argp_error(state, "--%s %s is not available in this version; it has: %s", option, text,
                    here);
+}
+
+/* SPH_PATH_... by name. */
+static uint32_t path(struct argp_state *state, const char *text)
+{
+    static const char *const name[] = {"best", "reference", "extended", "base", "avx2", "avx512"};
+    for (uint32_t k = 0; k < sizeof name / sizeof name[0]; k++)
+        if (strcmp(text, name[k]) == 0)
+            return k;
+    argp_error(state, "--path: \"%s\" is none of best, reference, extended, base, avx2 and avx512",
+               text);
+    return SPH_PATH_BEST;
 }
 
 static error_t parse(int key, char *arg, struct argp_state *state)
@@ -94,8 +110,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     case KEY_DEVICE:
         only(state, "device", arg, "cpu");
         return 0;
-    case KEY_PRECISION:
-        only(state, "precision", arg, "double");
+    case KEY_PATH:
+        a->path = path(state, arg);
         return 0;
     case KEY_DRY:
         a->dry = true;
@@ -149,6 +165,7 @@ static int run(const struct arguments *a, struct loaded *l, struct error *e)
                              .table = !a->quiet,
                              .audit = a->audit,
                              .threads = a->threads,
+                             .path = a->path,
                              .stop = &interrupted};
     double end = isnan(a->until) ? l->scene.time.end : a->until;
     if (!(end >= l->scene.time.begin))
@@ -196,6 +213,8 @@ int cli_run(int argc, char **argv)
     argp_err_exit_status = EXIT_USAGE;
     argp_parse(&argp, argc, argv, 0, NULL, &a);
     int status = ranks_begin(&argc, &argv, &e);
+    if (a.path == SPH_PATH_REFERENCE || a.path == SPH_PATH_EXTENDED)
+        a.scene.precision = precision_name[PRECISION_DOUBLE];
     if (!status)
         status = run_or_show(&a, &e);
     int code = status ? cli_error(&e) : interrupted ? EXIT_RUN : EXIT_DONE;

@@ -6,13 +6,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { KEY_LOAD = 'l', KEY_SET = 's' };
+enum { KEY_LOAD = 'l', KEY_SET = 's', KEY_PRECISION = 512 };
 
 static const struct argp_option options[] = {
     {"load", KEY_LOAD, "PLUGIN", 0, "Load a plugin, by name or path, besides those the scene names",
      0},
     {"set", KEY_SET, "PATH=VALUE", 0, "Change the scene: --set time.end=0.1 --set scheme.name=NAME",
      0},
+    {"precision", KEY_PRECISION, "WORD", 0,
+     "Of the arithmetic: double, mixed or single (default: the scene's, or its scheme's)", 0},
     {0},
 };
 
@@ -29,6 +31,11 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         if (o->n_set == sizeof o->set / sizeof o->set[0])
             argp_error(state, "too many --set");
         o->set[o->n_set++] = arg;
+        return 0;
+    case KEY_PRECISION:
+        if (strcmp(arg, "double") != 0 && strcmp(arg, "mixed") != 0 && strcmp(arg, "single") != 0)
+            argp_error(state, "--precision: \"%s\" is none of double, mixed and single", arg);
+        o->precision = arg;
         return 0;
     case ARGP_KEY_ARG:
         if (o->path)
@@ -73,6 +80,8 @@ static int load(struct loaded *l, const struct scene_options *o, struct error *e
     if (scene_compile(&l->scene, &l->doc, e))
         return -1;
     l->has_scene = true;
+    if (o->precision)
+        l->scene.precision = o->precision;
     if (registry_init(&l->registry, e))
         return -1;
     l->has_registry = true;

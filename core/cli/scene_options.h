@@ -11,6 +11,7 @@ struct scene_options {
     const char *load[64]; /* --load */
     const char *set[64];  /* --set */
     size_t n_load, n_set;
+    const char *precision; /* --precision, or NULL */
 };
 
 /* An argp child that fills a struct scene_options (its input). */

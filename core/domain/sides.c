@@ -2,6 +2,8 @@
  * particles' position and state columns, and what stands behind the real particles. */
 #include "domain/sides.h"
 
+#include "neighbours/neighbours.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -86,9 +88,9 @@ static void move_kept(struct particles *p, size_t i, int axis, double from, doub
         const struct column *c = &p->column[k];
 
         if (c->type == SPH_VECTOR && c->name[0] == 'x' && c->name[1] == '.') {
-            double *kept = (double *)c->data + (size_t)axis * c->plane + i;
+            double kept = column_get(c, (uint32_t)axis, i);
 
-            *kept = flipped ? from + to - *kept : *kept + (to - from);
+            column_set(c, (uint32_t)axis, i, flipped ? from + to - kept : kept + (to - from));
         }
     }
 }
@@ -101,9 +103,7 @@ static void turn_state(struct particles *p, size_t i, int axis)
 
         for (uint32_t q = 0; c->state && !is_position(c) && q < c->ncomp; q++) {
             if (turns(c->type, p->dim, q, axis)) {
-                double *v = (double *)c->data + q * c->plane + i;
-
-                *v = -*v;
+                column_set(c, q, i, -column_get(c, q, i));
             }
         }
     }
@@ -262,6 +262,35 @@ static int add_layer(struct ghosts *g, const struct box *box, struct particles *
     return 0;
 }
 
+/* Puts the ghosts into cell order, by their positions. Where those are no numbers they stay as they
+ * are: the neighbour search names the particle. */
+static int sort_ghosts(struct ghosts *g, const struct box *box, struct particles *p, double cell,
+                       struct error *e)
+{
+    struct cloud cloud = {.dim = p->dim, .n = g->n};
+    size_t bytes = g->n * (sizeof(uint32_t) + sizeof *g->parent + sizeof *g->image);
+    uint32_t *order = malloc(bytes + 1), *parent = order + g->n;
+    uint8_t *image = (uint8_t *)(parent + g->n);
+
+    if (!order) {
+        return error_memory(e, "the order of ghosts", bytes);
+    }
+    for (int a = 0; a < p->dim; a++) {
+        cloud.x[a] = particles_real(p, "x", (uint32_t)a) + p->n;
+    }
+    if (cell_order(&cloud, NULL, cell, 1, order, NULL) == 0) {
+        memcpy(parent, g->parent, g->n * sizeof *parent);
+        memcpy(image, g->image, g->n * sizeof *image);
+        for (size_t k = 0; k < g->n; k++) {
+            g->parent[k] = parent[order[k]];
+            g->image[k] = image[order[k]];
+        }
+        ghosts_refresh(g, box, p, particles_find(p, "x"));
+    }
+    free(order);
+    return 0;
+}
+
 int ghosts_make(struct ghosts *g, const struct box *box, struct particles *p, double margin,
                 struct error *e)
 {
@@ -290,6 +319,9 @@ int ghosts_make(struct ghosts *g, const struct box *box, struct particles *p, do
             return -1;
         }
     }
+    if (g->n > 0 && sort_ghosts(g, box, p, margin, e) != 0) {
+        return -1;
+    }
     if (h >= 0) {
         ghosts_refresh(g, box, p, h);
     }
@@ -300,7 +332,6 @@ int ghosts_make(struct ghosts *g, const struct box *box, struct particles *p, do
 static void refresh_real(const struct ghosts *g, const struct box *box, struct particles *p,
                          const struct column *c, uint32_t k)
 {
-    double *x = (double *)c->data + k * c->plane;
     bool position = strcmp(c->name, "x") == 0;
     unsigned turning = 0; /* the image bits that change the sign */
 
@@ -310,7 +341,7 @@ static void refresh_real(const struct ghosts *g, const struct box *box, struct p
         }
     }
     for (size_t q = 0; q < g->n; q++) {
-        double value = x[g->parent[q]];
+        double value = column_get(c, k, g->parent[q]);
         unsigned image = g->image[q];
 
         if (position) {
@@ -323,7 +354,7 @@ static void refresh_real(const struct ghosts *g, const struct box *box, struct p
 
             value = times % 2 ? -value : value;
         }
-        x[p->n + q] = value;
+        column_set(c, k, p->n + q, value);
     }
 }
 

@@ -124,8 +124,6 @@ static void fill_nothing(const struct writer *w, const struct out_column *c, siz
             ((int32_t *)w->slab)[i] = -1;
         else if (c->like->type == SPH_INT64)
             ((int64_t *)w->slab)[i] = -1;
-        else if (c->like->size == sizeof(float))
-            ((float *)w->slab)[i] = NAN;
         else
             ((double *)w->slab)[i] = (double)NAN;
     }
@@ -140,11 +138,15 @@ static void fill_column(const struct writer *w, const void *what, size_t a, size
         return;
     }
     const struct column *from = &w->arrays[a].column[c->at[a]];
+    const bool real = column_is_real(from);
     if (from->ncomp < c->ncomp)
-        memset(w->slab, 0, count * c->ncomp * from->size);
+        memset(w->slab, 0, count * c->ncomp * (real ? sizeof(double) : from->size));
     for (uint32_t k = 0; k < from->ncomp; k++) {
         const size_t offset = k * from->plane + first;
-        if (from->size == sizeof(double)) /* bytes are copied: an int64_t travels as well */
+        if (real) /* doubles in the file, whatever they are in memory */
+            for (size_t i = 0; i < count; i++)
+                ((double *)w->slab)[i * c->ncomp + k] = column_get(from, k, first + i);
+        else if (from->size == sizeof(int64_t))
             for (size_t i = 0; i < count; i++)
                 memcpy((char *)w->slab + (i * c->ncomp + k) * 8,
                        (char *)from->data + (offset + i) * 8, 8);
@@ -165,10 +167,8 @@ static void fill_points(const struct writer *w, const void *what, size_t a, size
     for (size_t i = 0; i < count; i++)
         for (uint32_t k = 0; k < 3; k++) {
             double x = 0.0;
-            if (from && k < from->ncomp && from->size == sizeof(double))
-                x = ((const double *)from->data)[k * from->plane + first + i];
-            else if (from && k < from->ncomp)
-                x = (double)((const float *)from->data)[k * from->plane + first + i];
+            if (from && k < from->ncomp)
+                x = column_get(from, k, first + i);
             to[3 * i + k] = x;
         }
 }
@@ -270,7 +270,7 @@ static int note_column(struct writer *w, size_t a, size_t k)
         for (size_t i = 0; i < w->n_array; i++)
             o->at[i] = NOT_THERE;
     }
-    if (o->like->type != c->type || o->like->ncomp != c->ncomp || o->like->size != c->size)
+    if (o->like->type != c->type || o->like->ncomp != c->ncomp)
         return error_set(w->e, EXIT_USAGE,
                          "column \"%s\" of array \"%s\" differs in type from that of other arrays",
                          c->name, w->arrays[a].name);
@@ -384,10 +384,9 @@ static int put_columns(struct writer *w)
     int result = put_column(w, where, "array", H5T_NATIVE_INT32, &of_array, fill_array);
     for (size_t i = 0; i < w->n_column && result == 0; i++) {
         const struct column *c = w->column[i].like;
-        const hid_t type = c->type == SPH_INT32       ? H5T_NATIVE_INT32
-                           : is_integer(c->type)      ? H5T_NATIVE_INT64
-                           : c->size == sizeof(float) ? H5T_NATIVE_FLOAT
-                                                      : H5T_NATIVE_DOUBLE;
+        const hid_t type = c->type == SPH_INT32  ? H5T_NATIVE_INT32
+                           : is_integer(c->type) ? H5T_NATIVE_INT64
+                                                 : H5T_NATIVE_DOUBLE;
         if (strcmp(c->name, "x") != 0)
             result = put_column(w, where, c->name, type, &w->column[i], fill_column);
     }

@@ -27,8 +27,8 @@ static unsigned plain_near_boxes(const struct box8 *b, const struct query *q, in
     return mask;
 }
 
-static void plain_pack(struct packed_leaf *p, struct packed_box8 *box, size_t k,
-                       const struct sources *s, const struct frame *f, uint32_t leaf)
+static void plain_pack_one(struct packed_leaf *p, struct packed_box8 *box, size_t k,
+                           const struct sources *s, const struct frame *f, uint32_t leaf)
 {
     size_t first = (size_t)leaf * LEAF, last = first + LEAF < s->n ? first + LEAF : s->n;
     double room[LEAF];
@@ -38,8 +38,6 @@ static void plain_pack(struct packed_leaf *p, struct packed_box8 *box, size_t k,
     for (int a = 0; a < s->dim; a++) {
         const double *from = filter_eight(s->x[a], first, last, room);
 
-        box->lo[a][k] = INFINITY;
-        box->hi[a][k] = -INFINITY;
         for (size_t i = 0; i < LEAF; i++) {
             double x = (from[i] - f->centre[a]) * f->inverse;
             float near;
@@ -52,7 +50,6 @@ static void plain_pack(struct packed_leaf *p, struct packed_box8 *box, size_t k,
             box->hi[a][k] = near > box->hi[a][k] ? near : box->hi[a][k];
         }
     }
-    box->reach[k] = 0;
     h = s->scale > 0 ? filter_eight(s->h, first, last, room) : NULL;
     for (size_t i = 0; i < LEAF; i++) {
         float reach = h ? (float)(s->scale * h[i] * f->inverse) : 0;
@@ -60,6 +57,21 @@ static void plain_pack(struct packed_leaf *p, struct packed_box8 *box, size_t k,
         p->r2[i] = reach * reach;
         p->s[i] = first + i < last ? p->s[i] : INFINITY;
         box->reach[k] = reach > box->reach[k] ? reach : box->reach[k];
+    }
+}
+
+static void plain_pack(struct packed_leaf *p, struct packed_box8 *box, const struct sources *s,
+                       const struct frame *f, const uint32_t *leaf, size_t n)
+{
+    for (size_t k = 0; k < LEAF; k++) {
+        for (int a = 0; a < 3; a++) {
+            box->lo[a][k] = INFINITY;
+            box->hi[a][k] = -INFINITY;
+        }
+        box->reach[k] = 0;
+        if (k < n) {
+            plain_pack_one(&p[k], box, k, s, f, leaf[k]);
+        }
     }
 }
 

@@ -41,9 +41,10 @@ struct lanes {
 struct filter {
     /* Bit k: box k of the eight is nearer to the query than the larger reach, MARGIN included. */
     unsigned (*near_boxes)(const struct box8 *boxes, const struct query *q, int dim);
-    /* Fills a leaf's pack, and box k of the eight with the box around it. */
-    void (*pack)(struct packed_leaf *p, struct packed_box8 *box, size_t k, const struct sources *s,
-                 const struct frame *f, uint32_t leaf);
+    /* Fills the packs of n leaves, at most eight, and the boxes around them; those that are left of
+     * the eight are at infinity. */
+    void (*pack)(struct packed_leaf *p, struct packed_box8 *box, const struct sources *s,
+                 const struct frame *f, const uint32_t *leaf, size_t n);
     /* Destinations [first, last) of a cloud, at most eight, whose reach is scale * h. */
     void (*lanes)(struct lanes *t, const struct cloud *c, double scale, const struct frame *f,
                   size_t first, size_t last);

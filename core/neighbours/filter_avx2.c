@@ -13,6 +13,7 @@ AVX2_INLINE unsigned avx2_near_four(const struct box8 *b, int k, const struct qu
 {
     __m256d gap = _mm256_setzero_pd(), zero = gap, reach;
 
+#pragma GCC unroll 3
     for (int a = 0; a < dim; a++) {
         __m256d below = _mm256_sub_pd(_mm256_load_pd(&b->lo[a][k]), _mm256_set1_pd(q->hi[a]));
         __m256d above = _mm256_sub_pd(_mm256_set1_pd(q->lo[a]), _mm256_load_pd(&b->hi[a][k]));
@@ -63,35 +64,114 @@ AVX2_INLINE float avx2_most(__m256 x)
     return _mm_cvtss_f32(_mm_max_ss(m, _mm_movehdup_ps(m)));
 }
 
-AVX2 static void avx2_pack(struct packed_leaf *p, struct packed_box8 *box, size_t k,
-                           const struct sources *s, const struct frame *f, uint32_t leaf)
+/* Of two vectors, halves of which are compared: the smaller ones, in turns. */
+AVX2_INLINE __m256 avx2_fold(__m256 x, __m256 y)
+{
+    return _mm256_min_ps(_mm256_unpacklo_ps(x, y), _mm256_unpackhi_ps(x, y));
+}
+
+AVX2_INLINE __m256 avx2_fold2(__m256 x, __m256 y)
+{
+    __m256d a = _mm256_castps_pd(x), b = _mm256_castps_pd(y);
+
+    return _mm256_min_ps(_mm256_castpd_ps(_mm256_unpacklo_pd(a, b)),
+                         _mm256_castpd_ps(_mm256_unpackhi_pd(a, b)));
+}
+
+/* The least of each of eight vectors. */
+AVX2_INLINE __m256 avx2_least8(const __m256 *v)
+{
+    __m256 low = avx2_fold2(avx2_fold(v[0], v[1]), avx2_fold(v[2], v[3]));
+    __m256 high = avx2_fold2(avx2_fold(v[4], v[5]), avx2_fold(v[6], v[7]));
+
+    return _mm256_min_ps(_mm256_permute2f128_ps(low, high, 0x20),
+                         _mm256_permute2f128_ps(low, high, 0x31));
+}
+
+AVX2_INLINE void avx2_transpose(const __m256 *row, __m256 *column)
+{
+    __m256 a[8], b[8];
+
+#pragma GCC unroll 4
+    for (int k = 0; k < 8; k += 2) {
+        a[k] = _mm256_unpacklo_ps(row[k], row[k + 1]);
+        a[k + 1] = _mm256_unpackhi_ps(row[k], row[k + 1]);
+    }
+#pragma GCC unroll 2
+    for (int k = 0; k < 8; k += 4) {
+        b[k] = _mm256_shuffle_ps(a[k], a[k + 2], 0x44);
+        b[k + 1] = _mm256_shuffle_ps(a[k], a[k + 2], 0xee);
+        b[k + 2] = _mm256_shuffle_ps(a[k + 1], a[k + 3], 0x44);
+        b[k + 3] = _mm256_shuffle_ps(a[k + 1], a[k + 3], 0xee);
+    }
+#pragma GCC unroll 4
+    for (int k = 0; k < 4; k++) {
+        column[k] = _mm256_permute2f128_ps(b[k], b[k + 4], 0x20);
+        column[k + 4] = _mm256_permute2f128_ps(b[k], b[k + 4], 0x31);
+    }
+}
+
+/* Fills a leaf's pack; the least of x, y, z, -x, -y, -z, -reach. */
+AVX2_INLINE __m256 avx2_pack_one(struct packed_leaf *p, const struct sources *s,
+                                 const struct frame *f, uint32_t leaf, int dim)
 {
     size_t first = (size_t)leaf * LEAF, last = first + LEAF < s->n ? first + LEAF : s->n;
-    __m256 s2 = _mm256_setzero_ps(), r2 = s2, far = _mm256_set1_ps((float)FILTER_FAR);
+    __m256 zero = _mm256_setzero_ps(), s2 = zero, reach = zero;
+    __m256 far = _mm256_set1_ps((float)FILTER_FAR),
+           v[8] = {zero, zero, zero, zero, zero, zero, zero, zero};
     double room[LEAF];
 
-    for (int a = 0; a < s->dim; a++) {
+#pragma GCC unroll 3
+    for (int a = 0; a < dim; a++) {
         const double *from = filter_eight(s->x[a], first, last, room);
         __m256 x = avx2_float(from, f->centre[a], f->inverse);
 
-        x = _mm256_max_ps(_mm256_min_ps(x, far), _mm256_sub_ps(_mm256_setzero_ps(), far));
+        x = _mm256_max_ps(_mm256_min_ps(x, far), _mm256_sub_ps(zero, far));
         _mm256_store_ps(p->x[a], x);
         s2 = _mm256_fmadd_ps(x, x, s2);
-        box->lo[a][k] = avx2_least(x);
-        box->hi[a][k] = avx2_most(x);
+        v[a] = x;
+        v[a + 3] = _mm256_sub_ps(zero, x);
     }
-    box->reach[k] = 0;
     if (s->scale > 0) {
-        const double *h = filter_eight(s->h, first, last, room);
-        __m256 reach = avx2_float(h, 0, f->inverse * s->scale);
-
-        r2 = _mm256_mul_ps(reach, reach);
-        box->reach[k] = avx2_most(reach);
+        reach = avx2_float(filter_eight(s->h, first, last, room), 0, f->inverse * s->scale);
+        v[6] = _mm256_sub_ps(zero, reach);
     }
     _mm256_store_ps(p->s, s2);
-    _mm256_store_ps(p->r2, r2);
+    _mm256_store_ps(p->r2, _mm256_mul_ps(reach, reach));
     for (size_t i = last - first; i < LEAF; i++) {
         p->s[i] = INFINITY;
+    }
+    return avx2_least8(v);
+}
+
+AVX2_INLINE void avx2_pack_dim(struct packed_leaf *p, struct packed_box8 *box,
+                               const struct sources *s, const struct frame *f, const uint32_t *leaf,
+                               size_t n, int dim)
+{
+    __m256 row[8], zero = _mm256_setzero_ps(), far = _mm256_set1_ps(INFINITY);
+
+    for (size_t k = 0; k < LEAF; k++) {
+        row[k] =
+            k < n ? avx2_pack_one(&p[k], s, f, leaf[k], dim) : _mm256_blend_ps(far, zero, 0xc0);
+    }
+    avx2_transpose(row, row);
+#pragma GCC unroll 3
+    for (int a = 0; a < dim; a++) {
+        _mm256_store_ps(box->lo[a], row[a]);
+        _mm256_store_ps(box->hi[a], _mm256_sub_ps(zero, row[a + 3]));
+    }
+    _mm256_store_ps(box->reach, _mm256_sub_ps(zero, row[6]));
+}
+
+AVX2 static void avx2_pack(struct packed_leaf *p, struct packed_box8 *box, const struct sources *s,
+                           const struct frame *f, const uint32_t *leaf, size_t n)
+{
+    if (s->dim == 3) {
+        avx2_pack_dim(p, box, s, f, leaf, n, 3);
+    } else if (s->dim == 2) {
+        avx2_pack_dim(p, box, s, f, leaf, n, 2);
+    } else {
+        avx2_pack_dim(p, box, s, f, leaf, n, 1);
     }
 }
 
@@ -158,6 +238,7 @@ AVX2_INLINE size_t avx2_leaves(const struct packed_box8 *boxes, size_t n, const 
         const struct packed_box8 *b = &boxes[q / LEAF];
         __m256 gap = zero, reach = _mm256_max_ps(_mm256_load_ps(b->reach), own);
 
+#pragma GCC unroll 3
         for (int a = 0; a < dim; a++) {
             __m256 below = _mm256_sub_ps(_mm256_load_ps(b->lo[a]), _mm256_set1_ps(t->hi[a]));
             __m256 above = _mm256_sub_ps(_mm256_set1_ps(t->lo[a]), _mm256_load_ps(b->hi[a]));

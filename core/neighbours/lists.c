@@ -271,7 +271,7 @@ int filter_make(struct group_list *list, const struct cloud *dst, const struct c
     if (sources_make(&sources, dst, src, symmetric, factor, threads, e) != 0) {
         return -1;
     }
-    list->manager = manager ? manager : neighbour_manager_choose(dst, src, symmetric);
+    list->manager = manager ? manager : neighbour_manager_default();
     j.manager = list->manager->calls;
     j.search = search = j.manager->make(&sources, filter, threads, &bytes, e);
     j.count = list->begin;

@@ -1,4 +1,4 @@
-/* neighbours/manager.c -- the table of neighbour managers, and the choice among them. Pure. */
+/* neighbours/manager.c -- the table of neighbour managers, and which is the default. Pure. */
 #include "neighbours/manager.h"
 
 #include <string.h>
@@ -39,11 +39,7 @@ const struct neighbour_manager *neighbour_manager_find(const char *name)
     return NULL;
 }
 
-const struct neighbour_manager *neighbour_manager_choose(const struct cloud *dst,
-                                                         const struct cloud *src, bool symmetric)
+const struct neighbour_manager *neighbour_manager_default(void)
 {
-    (void)dst;
-    (void)src;
-    (void)symmetric;
     return &table[NEIGHBOURS_BOXES];
 }

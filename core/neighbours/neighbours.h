@@ -63,12 +63,13 @@ struct neighbour_manager {
 const struct neighbour_manager *neighbour_manager_at(size_t k);
 /* NULL if none has this name. */
 const struct neighbour_manager *neighbour_manager_find(const char *name);
-/* The one taken where none is asked for. */
-const struct neighbour_manager *neighbour_manager_choose(const struct cloud *dst,
-                                                         const struct cloud *src, bool symmetric);
+/* The one taken where none is asked for: "boxes", which was the fastest of all for even particles
+ * and for reaches that range over a factor of 100 (make bench prints both). "octree" looks at a fifth
+ * fewer sources in the latter, but must put all in an order of its own first. */
+const struct neighbour_manager *neighbour_manager_default(void);
 
 /* Lists for destinations dst over sources src (which may be the same arrays, self pairs
- * included). `skin` is relative (0.1). manager: NULL for neighbour_manager_choose. threads: how
+ * included). `skin` is relative (0.1). manager: NULL for neighbour_manager_default. threads: how
  * many OpenMP threads; the result is the same for any. src->h may be NULL if !symmetric. Fails,
  * naming the particle by its index, if a position or smoothing length is not a number that can be
  * (finite, h >= 0). Begin with a list of zeros; one that is made again uses its memory again. */
@@ -77,7 +78,7 @@ int group_list_make(struct group_list *list, const struct cloud *dst, const stru
                     int threads, struct error *e);
 /* Directed pairs within reach (no skin, self pairs included) among those that the list offers. */
 uint64_t group_list_count(const struct group_list *list, const struct cloud *dst,
-                          const struct cloud *src);
+                          const struct cloud *src, int threads);
 /* Entries of groups [first, end). */
 static inline uint64_t group_list_entries(const struct group_list *list, size_t first, size_t end)
 {
@@ -118,12 +119,14 @@ void group_list_fini(struct group_list *list);
 size_t group_list_bytes(const struct group_list *list);
 
 /* The order that puts points into linear cell order (cells of edge `cell`, x fastest, sorted by x
- * and then by id within a cell): order[i] = old index of the i-th. id may be NULL. Deterministic,
- * and the same however the points stood before if the ids differ. Cells that hold many points are
- * divided further, and in a box that is mostly empty larger cells are taken first. Best for the
- * lists: a cell as wide as the reach (with variable h: the mean reach) in 3D, 1.3 times that in
- * 2D. */
-int cell_order(const struct cloud *points, const int64_t *id, double cell, uint32_t *order,
-               struct error *e);
+ * and then by id within a cell): order[i] = old index of the i-th. id may be NULL. The same for any
+ * number of threads, and however the points stood before if the ids differ. Cells that hold many
+ * points are divided into groups of lists, and in a box that is mostly empty larger cells are
+ * taken. */
+int cell_order(const struct cloud *points, const int64_t *id, double cell, int threads,
+               uint32_t *order, struct error *e);
+/* The edge that is best for lists: the mean reach in 3D, 1.3 times that in 2D and 1D; three times as
+ * much where reaches range widely, so that dense places are divided by their own density. */
+double cell_best(const struct cloud *points);
 
 #endif

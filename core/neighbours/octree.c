@@ -101,7 +101,7 @@ static uint32_t node_new(struct octree *t, struct error *e)
 {
     if (t->n_node == t->capacity) {
         size_t capacity = t->capacity + t->capacity / 2 + t->s->n / 16 + 8;
-        struct node *node = aligned_alloc(64, capacity * sizeof *node);
+        struct node *node = aligned_alloc(32, capacity * sizeof *node);
 
         if (!node) {
             error_memory(e, "the nodes of the neighbour search", capacity * sizeof *node);

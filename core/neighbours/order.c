@@ -1,10 +1,10 @@
 /* neighbours/order.c -- puts points into linear cell order. Writes only the order.
  *
  * A counting sort into cells. Where the box is so empty that there would be more cells than
- * points, larger cells are taken first; a cell that holds many points is sorted into smaller
- * cells of its own, within the points' own bounds. So an outlier costs a level of recursion and
- * no memory, and the dense places of a cloud with variable smoothing length are as well ordered
- * as the thin ones. */
+ * points, larger cells are taken. A cell that holds many points is halved across its longest
+ * extent, and again, until there are eight in a part: close together in space, as the groups of
+ * neighbour lists should be. So an outlier costs time and no memory, and the dense places of a
+ * cloud with variable smoothing length are as well ordered as the thin ones. */
 #include "neighbours/neighbours.h"
 
 #include "neighbours/grid.h"
@@ -15,13 +15,13 @@
 #include <string.h>
 
 #define CELL_MOST 32 /* points of a cell that are sorted by x alone */
-#define CELL_AIM 16  /* points of a cell into which a full one is sorted */
-#define DEPTH_MOST 64
+#define GROUP SPH_LANES
+#define WIDE 1.5 /* the largest reach in units of the mean, from which they range widely */
 
 struct sorter {
     const struct cloud *c;
     const int64_t *id;
-    uint32_t *order, *scratch, *cell; /* [n] each: the order, its next state, the points' cells */
+    uint32_t *order, *cell; /* [n] each: the order, the points' cells */
 };
 
 /* -- Within a cell ----------------------------------------------------------------------------- */
@@ -53,146 +53,272 @@ static void insertion_sort(const struct sorter *s, uint32_t *order, size_t n)
     }
 }
 
-static void sift(const struct sorter *s, uint32_t *heap, size_t k, size_t n)
-{
-    uint32_t i = heap[k];
+/* -- A crowded cell ---------------------------------------------------------------------------- */
 
-    for (size_t child = 2 * k + 1; child < n; child = 2 * k + 1) {
-        if (child + 1 < n && before(s, heap[child], heap[child + 1])) {
-            child++;
-        }
-        if (!before(s, i, heap[child])) {
-            break;
-        }
-        heap[k] = heap[child];
-        k = child;
+/* A point of the crowd, by itself in memory. */
+struct member {
+    double x[3];
+    uint32_t i;
+};
+
+struct crowd {
+    const struct sorter *s;
+    struct member *member;
+    size_t first;   /* of the order: where the crowd stands */
+    bool turned[3]; /* axes along which it is walked from high to low */
+    uint64_t seed;
+};
+
+static bool member_before(const struct crowd *c, const struct member *a, const struct member *b,
+                          int axis)
+{
+    if (a->x[axis] < b->x[axis] || a->x[axis] > b->x[axis]) {
+        return (a->x[axis] < b->x[axis]) != c->turned[axis];
     }
-    heap[k] = i;
+    if (c->s->id && c->s->id[a->i] != c->s->id[b->i]) {
+        return c->s->id[a->i] < c->s->id[b->i];
+    }
+    return a->i < b->i;
 }
 
-static void sort_by_x(const struct sorter *s, uint32_t *order, size_t n)
+static void swap(struct member *a, struct member *b)
 {
-    if (n <= CELL_MOST) {
-        insertion_sort(s, order, n);
+    struct member t = *a;
+
+    *a = *b;
+    *b = t;
+}
+
+/* One of [first, last), in the middle of three that were drawn. What is drawn changes the time, not
+ * the result. */
+static size_t draw_pivot(struct crowd *c, size_t first, size_t last, int axis)
+{
+    size_t p[3];
+
+    for (int k = 0; k < 3; k++) {
+        c->seed = c->seed * 6364136223846793005ull + 1442695040888963407ull;
+        p[k] = first + (size_t)((c->seed >> 33) % (last - first));
+    }
+    for (int k = 0; k < 3; k++) {
+        size_t a = p[(k + 1) % 3], b = p[(k + 2) % 3];
+        bool above = member_before(c, &c->member[a], &c->member[p[k]], axis);
+        bool below = member_before(c, &c->member[p[k]], &c->member[b], axis);
+
+        if (above && below) {
+            return p[k];
+        }
+    }
+    return p[0];
+}
+
+/* Puts the first `want` along an axis, of [first, last), before the others (Hoare's FIND). */
+static void part(struct crowd *c, size_t first, size_t last, size_t want, int axis)
+{
+    struct member *m = c->member;
+
+    want += first;
+    while (last - first > 1) {
+        size_t low = first, pivot = draw_pivot(c, first, last, axis);
+
+        swap(&m[pivot], &m[last - 1]);
+        for (size_t k = first; k + 1 < last; k++) {
+            if (member_before(c, &m[k], &m[last - 1], axis)) {
+                swap(&m[k], &m[low++]);
+            }
+        }
+        swap(&m[low], &m[last - 1]);
+        if (want == low || want == low + 1) {
+            return;
+        }
+        if (want < low) {
+            last = low;
+        } else {
+            first = low + 1;
+        }
+    }
+}
+
+static int longest_axis(const struct crowd *c, size_t first, size_t last, double *extent)
+{
+    int axis = 0;
+
+    *extent = -1;
+    for (int a = 0; a < c->s->c->dim; a++) {
+        double lo = INFINITY, hi = -INFINITY;
+
+        for (size_t k = first; k < last; k++) {
+            double x = c->member[k].x[a];
+
+            lo = x < lo ? x : lo;
+            hi = x > hi ? x : hi;
+        }
+        if (hi - lo > *extent) {
+            *extent = hi - lo;
+            axis = a;
+        }
+    }
+    return axis;
+}
+
+/* Halves members [first, last) across their longest extent until they are in groups, which begin at
+ * multiples of eight of the whole order. */
+static void halve(struct crowd *c, size_t first, size_t last)
+{
+    size_t begin = (c->first + first) / GROUP, end = (c->first + last + GROUP - 1) / GROUP, middle;
+    double extent;
+    int axis = longest_axis(c, first, last, &extent);
+
+    if (end - begin < 2) {
+        /* By x, as in any cell. */
+        for (size_t k = first + 1; k < last; k++) {
+            for (size_t q = k; q > first && member_before(c, &c->member[q], &c->member[q - 1], 0);
+                 q--) {
+                swap(&c->member[q], &c->member[q - 1]);
+            }
+        }
         return;
     }
-    for (size_t k = n / 2; k-- > 0;) {
-        sift(s, order, k, n);
-    }
-    for (size_t last = n - 1; last > 0; last--) {
-        uint32_t i = order[last];
-
-        order[last] = order[0];
-        order[0] = i;
-        sift(s, order, 0, last);
-    }
+    middle = (begin + (end - begin + 1) / 2) * GROUP - c->first;
+    part(c, first, last, middle - first, axis);
+    halve(c, first, middle);
+    halve(c, middle, last);
 }
 
-/* -- Cells ------------------------------------------------------------------------------------- */
-
-/* The edge with about CELL_AIM points a cell, were they even; at most half the longest extent, so
- * that every level gets on. */
-static double crowded_edge(const double *lo, const double *hi, int dim, size_t n)
+/* Sorts points [first, first + n), which crowd one cell, into groups. Cells are walked upwards along
+ * x, and along the others in turns, so that the group at the border of two cells is close together
+ * too. */
+static int sort_crowd(struct sorter *s, size_t first, size_t n, bool turn)
 {
-    double longest = 0, volume = CELL_AIM / (double)n;
-    int axes = 0;
+    struct crowd c = {.s = s, .first = first, .turned = {false, turn, turn}, .seed = first};
 
-    for (int a = 0; a < dim; a++) {
-        longest = fmax(longest, hi[a] - lo[a]);
+    c.member = malloc(n * sizeof *c.member);
+    if (!c.member) {
+        return -1;
     }
-    for (int a = 0; a < dim; a++) {
-        double extent = hi[a] - lo[a];
+    for (size_t k = 0; k < n; k++) {
+        uint32_t i = s->order[first + k];
 
-        if (extent > 1e-3 * longest) {
-            volume *= extent / longest;
-            axes++;
+        c.member[k].i = i;
+        for (int a = 0; a < s->c->dim; a++) {
+            c.member[k].x[a] = s->c->x[a][i];
         }
     }
-    return fmin(longest * pow(volume, 1.0 / axes), longest / 2);
+    halve(&c, 0, n);
+    for (size_t k = 0; k < n; k++) {
+        s->order[first + k] = c.member[k].i;
+    }
+    free(c.member);
+    return 0;
 }
 
-/* Sorts points [first, first + n) of the order into the grid's cells; ends[k] is then where cell k
- * ends. Stable. */
-static void count_sort(struct sorter *s, const struct grid *g, size_t first, size_t n,
-                       uint32_t *ends)
+/* -- All points, on several threads ------------------------------------------------------------ */
+
+static void share(size_t n, size_t threads, size_t t, size_t *first, size_t *end)
 {
-    uint32_t *order = s->order + first, *scratch = s->scratch + first, *cell = s->cell + first;
+    size_t each = (n + threads - 1) / threads;
+
+    *first = t * each < n ? t * each : n;
+    *end = (t + 1) * each < n ? (t + 1) * each : n;
+}
+
+static void all_bounds(const struct sorter *s, double *lo, double *hi, size_t threads)
+{
+    for (int a = 0; a < s->c->dim; a++) {
+        const double *x = s->c->x[a];
+        double least = INFINITY, most = -INFINITY;
+
+        (void)threads;
+#pragma omp parallel for schedule(static) num_threads((int)threads) if (threads > 1)               \
+    reduction(min                                                                                  \
+              : least) reduction(max                                                               \
+                                 : most)
+        for (size_t i = 0; i < s->c->n; i++) {
+            least = x[i] < least ? x[i] : least;
+            most = x[i] > most ? x[i] : most;
+        }
+        lo[a] = least;
+        hi[a] = most;
+    }
+}
+
+/* Sorts all points into the cells, in the order in which they stand: each thread counts and moves a
+ * share of them. count: [threads][g->n], of which the last thread's are then the ends of the cells. */
+static void share_sort(struct sorter *s, const struct grid *g, size_t threads, uint32_t *count)
+{
+    size_t n = s->c->n;
     uint32_t sum = 0;
 
-    memset(ends, 0, g->n * sizeof *ends);
-    for (size_t k = 0; k < n; k++) {
-        cell[k] = (uint32_t)grid_cell(g, s->c->x, order[k]);
-        ends[cell[k]]++;
+#pragma omp parallel for schedule(static, 1) num_threads((int)threads) if (threads > 1)
+    for (size_t t = 0; t < threads; t++) {
+        uint32_t *mine = count + t * g->n;
+        size_t first, end;
+
+        share(n, threads, t, &first, &end);
+        memset(mine, 0, g->n * sizeof *mine);
+        for (size_t i = first; i < end; i++) {
+            s->cell[i] = (uint32_t)grid_cell(g, s->c->x, i);
+            mine[s->cell[i]]++;
+        }
     }
     for (size_t k = 0; k < g->n; k++) {
-        uint32_t count = ends[k];
+        for (size_t t = 0; t < threads; t++) {
+            uint32_t here = count[t * g->n + k];
 
-        ends[k] = sum;
-        sum += count;
+            count[t * g->n + k] = sum;
+            sum += here;
+        }
     }
-    for (size_t k = 0; k < n; k++) {
-        scratch[ends[cell[k]]++] = order[k];
-    }
-    memcpy(order, scratch, n * sizeof *order);
-}
+#pragma omp parallel for schedule(static, 1) num_threads((int)threads) if (threads > 1)
+    for (size_t t = 0; t < threads; t++) {
+        uint32_t *mine = count + t * g->n;
+        size_t first, end;
 
-static void bounds(const struct sorter *s, size_t first, size_t n, double *lo, double *hi)
-{
-    for (int a = 0; a < s->c->dim; a++) {
-        lo[a] = INFINITY;
-        hi[a] = -INFINITY;
-        for (size_t k = first; k < first + n; k++) {
-            double x = s->c->x[a][s->order[k]];
-
-            lo[a] = x < lo[a] ? x : lo[a];
-            hi[a] = x > hi[a] ? x : hi[a];
+        share(n, threads, t, &first, &end);
+        for (size_t i = first; i < end; i++) {
+            s->order[mine[s->cell[i]]++] = (uint32_t)i;
         }
     }
 }
 
-/* Sorts points [first, first + n); `edge` is that of the cells wanted at the top, 0 below it. */
-static int sort_cells(struct sorter *s, size_t first, size_t n, double edge, int depth,
-                      struct error *e)
+/* Sorts all points into cells of this edge, or of one that suits them if it is none. */
+static int sort_all(struct sorter *s, double edge, size_t threads, struct error *e)
 {
-    double lo[3], hi[3], longest = 0;
+    double lo[3], hi[3];
     struct grid g;
-    uint32_t *ends;
-    size_t begin = 0;
+    uint32_t *count, *ends;
     int status = 0;
 
-    bounds(s, first, n, lo, hi);
-    for (int a = 0; a < s->c->dim; a++) {
-        longest = fmax(longest, hi[a] - lo[a]);
+    all_bounds(s, lo, hi, threads);
+    if (!(edge > 0)) {
+        edge = 0; /* as many cells as can be */
     }
-    if (!(longest > 0) || depth > DEPTH_MOST || (depth > 0 && n <= CELL_MOST)) {
-        sort_by_x(s, s->order + first, n);
-        return 0;
+    grid_init(&g, lo, hi, s->c->dim, edge, s->c->n);
+    while (threads > 1 && threads * g.n > 4 * s->c->n) {
+        threads--; /* counting must not cost more than the points */
     }
-    if (!(edge > 0) || (depth > 0 && edge > longest / 2)) {
-        edge = crowded_edge(lo, hi, s->c->dim, n);
+    count = malloc(threads * g.n * sizeof *count);
+    if (!count) {
+        return error_memory(e, "sorting particles into cells", threads * g.n * sizeof *count);
     }
-    grid_init(&g, lo, hi, s->c->dim, edge, n);
-    ends = malloc(g.n * sizeof *ends);
-    if (!ends) {
-        return error_memory(e, "sorting particles into cells", g.n * sizeof *ends);
-    }
-    count_sort(s, &g, first, n, ends);
-    for (size_t k = 0; k < g.n && status == 0; k++) {
-        size_t m = ends[k] - begin;
-
-        if (m > CELL_MOST) {
-            status = sort_cells(s, first + begin, m, edge, depth + 1, e);
-        } else if (m > 1) {
-            sort_by_x(s, s->order + first + begin, m);
+    share_sort(s, &g, threads, count);
+    ends = count + (threads - 1) * g.n;
+#pragma omp parallel for schedule(dynamic, 64) num_threads((int)threads) if (threads > 1)          \
+    reduction(min                                                                                  \
+              : status)
+    for (size_t k = 0; k < g.n; k++) {
+        size_t begin = k ? ends[k - 1] : 0;
+        if (ends[k] - begin <= CELL_MOST) {
+            insertion_sort(s, s->order + begin, ends[k] - begin);
+        } else if (sort_crowd(s, begin, ends[k] - begin, k % ((size_t)g.last[0] + 1) % 2) != 0) {
+            status = -1;
         }
-        begin = ends[k];
     }
-    free(ends);
-    return status;
+    free(count);
+    return status == 0 ? 0 : error_memory(e, "sorting particles into cells", g.n * sizeof *count);
 }
 
-int cell_order(const struct cloud *points, const int64_t *id, double cell, uint32_t *order,
-               struct error *e)
+int cell_order(const struct cloud *points, const int64_t *id, double cell, int threads,
+               uint32_t *order, struct error *e)
 {
     struct sorter s = {.c = points, .id = id, .order = order};
     size_t n = points->n;
@@ -204,15 +330,23 @@ int cell_order(const struct cloud *points, const int64_t *id, double cell, uint3
     if (n == 0) {
         return 0;
     }
-    s.scratch = malloc(2 * n * sizeof *s.scratch);
-    if (!s.scratch) {
-        return error_memory(e, "sorting particles", 2 * n * sizeof *s.scratch);
+    s.cell = malloc(n * sizeof *s.cell);
+    if (!s.cell) {
+        return error_memory(e, "sorting particles", n * sizeof *s.cell);
     }
-    s.cell = s.scratch + n;
-    for (size_t i = 0; i < n; i++) {
-        order[i] = (uint32_t)i;
-    }
-    status = sort_cells(&s, 0, n, cell, 0, e);
-    free(s.scratch);
+    status = sort_all(&s, cell, threads > 1 && n > 4096 ? (size_t)threads : 1, e);
+    free(s.cell);
     return status;
+}
+
+double cell_best(const struct cloud *points)
+{
+    double sum = 0, most = 0, mean;
+
+    for (size_t i = 0; i < points->n; i++) {
+        sum += points->h[i];
+        most = points->h[i] > most ? points->h[i] : most;
+    }
+    mean = points->n > 0 ? sum / (double)points->n : 0;
+    return points->scale * mean * (points->dim == 3 ? 1 : 1.3) * (most > WIDE * mean ? 3 : 1);
 }

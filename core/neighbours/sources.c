@@ -125,7 +125,7 @@ static bool scattered(const struct sources *s)
 }
 
 /* Gives the search an order of its own and copies of the points in it. */
-static int reorder(struct sources *s, const struct cloud *c, struct error *e)
+static int reorder(struct sources *s, const struct cloud *c, int threads, struct error *e)
 {
     size_t columns = (size_t)s->dim + (s->scale > 0), bytes = columns * s->n * sizeof(double);
     double *copy;
@@ -135,7 +135,7 @@ static int reorder(struct sources *s, const struct cloud *c, struct error *e)
     if (!s->own_order || !s->copy) {
         return error_memory(e, "the neighbour search's order", bytes);
     }
-    if (cell_order(c, NULL, s->typical, s->own_order, e) != 0) {
+    if (cell_order(c, NULL, s->typical, threads, s->own_order, e) != 0) {
         return -1;
     }
     s->order = s->own_order;
@@ -159,7 +159,6 @@ int sources_make(struct sources *s, const struct cloud *dst, const struct cloud 
     double asked = factor * dst->scale * largest_h(dst);
 
     memset(s, 0, sizeof *s);
-    (void)threads;
     s->dim = src->dim;
     s->n = src->n;
     s->n_leaf = (s->n + LEAF - 1) / LEAF;
@@ -171,7 +170,7 @@ int sources_make(struct sources *s, const struct cloud *dst, const struct cloud 
     for (int a = 0; a < s->dim; a++) {
         s->x[a] = src->x[a];
     }
-    if (s->typical > 0 && scattered(s) && reorder(s, src, e) != 0) {
+    if (s->typical > 0 && scattered(s) && reorder(s, src, threads, e) != 0) {
         sources_free(s);
         return -1;
     }

@@ -13,7 +13,7 @@
 #include <string.h>
 
 #define BUNDLE_MOST 16    /* groups in a bundle */
-#define BUNDLE_SPREAD 5.0 /* half the diagonal of a bundle's box, in units of its smallest reach */
+#define BUNDLE_SPREAD 2.5 /* half the diagonal of a bundle's box, in units of its smallest reach */
 
 /* Destinations [first, last) that are looked after together. */
 struct stretch {
@@ -188,6 +188,19 @@ static bool find(const struct job *j, struct worker *w, const struct stretch *s)
     return true;
 }
 
+/* Leaves lie in many rows, which no processor foresees. */
+static void fetch_ahead(const struct sources *s, const uint32_t *leaf, size_t n)
+{
+    for (size_t k = 0; k < n; k++) {
+        for (int a = 0; a < s->dim; a++) {
+            __builtin_prefetch(s->x[a] + (size_t)leaf[k] * LEAF);
+        }
+        if (s->scale > 0) {
+            __builtin_prefetch(s->h + (size_t)leaf[k] * LEAF);
+        }
+    }
+}
+
 /* Finds and packs the leaves near a stretch. */
 static void look(const struct job *j, struct worker *w, const struct stretch *s, struct frame *f)
 {
@@ -195,17 +208,11 @@ static void look(const struct job *j, struct worker *w, const struct stretch *s,
         return;
     }
     frame_init(f, j, s);
-    for (size_t k = 0; k < w->n_leaf; k++) {
-        j->filter->pack(&w->pack[k], &w->box[k / LEAF], k % LEAF, j->src, f, w->leaf[k]);
-    }
-    for (size_t k = w->n_leaf; k % LEAF; k++) {
-        struct packed_box8 *none = &w->box[k / LEAF];
+    for (size_t k = 0; k < w->n_leaf; k += LEAF) {
+        size_t left = w->n_leaf - k, n = left < LEAF ? left : LEAF;
 
-        for (int a = 0; a < 3; a++) {
-            none->lo[a][k % LEAF] = INFINITY;
-            none->hi[a][k % LEAF] = -INFINITY;
-        }
-        none->reach[k % LEAF] = 0;
+        fetch_ahead(j->src, w->leaf + k + n, left < 2 * LEAF ? left - n : LEAF);
+        j->filter->pack(&w->pack[k], &w->box[k / LEAF], j->src, f, w->leaf + k, n);
     }
 }
 

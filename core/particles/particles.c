@@ -88,26 +88,55 @@ static void *column_alloc(const struct particles *p, size_t bytes)
     return data;
 }
 
-static void column_release(struct particles *p, struct column *c)
+static size_t mirror_bytes(const struct particles *p, const struct column *c, size_t plane)
 {
-    if (c->data) {
-        size_t bytes = column_bytes(p, c, c->plane);
+    struct column half = *c;
 
-        if (p->guarded) {
-            munmap(c->data, bytes + page_size());
-        } else {
-            free(c->data);
-        }
-        p->arena_bytes -= bytes;
-        c->data = NULL;
-    }
+    half.size = 4;
+    return column_bytes(p, &half, plane);
 }
 
-/* Gives the column room for `capacity`, the first `keep` elements of each component kept. */
+static void release(struct particles *p, void *data, size_t bytes)
+{
+    if (!data) {
+        return;
+    }
+    if (p->guarded) {
+        munmap(data, bytes + page_size());
+    } else {
+        free(data);
+    }
+    p->arena_bytes -= bytes;
+}
+
+static void column_release(struct particles *p, struct column *c)
+{
+    release(p, c->data, column_bytes(p, c, c->plane));
+    release(p, c->mirror, mirror_bytes(p, c, c->plane));
+    c->data = NULL;
+    c->mirror = NULL;
+}
+
+static int mirror_alloc(struct particles *p, struct column *c, struct error *e)
+{
+    size_t bytes = mirror_bytes(p, c, c->plane);
+
+    c->mirror = column_alloc(p, bytes);
+    if (!c->mirror) {
+        error_memory(e, c->name, bytes);
+        return error_prefix(e, "%s", p->name);
+    }
+    p->arena_bytes += bytes;
+    return 0;
+}
+
+/* Gives the column room for `capacity`, the first `keep` elements of each component kept; those of
+ * a mirror are not. */
 static int column_grow(struct particles *p, struct column *c, size_t capacity, size_t keep,
                        struct error *e)
 {
     size_t plane = plane_for(capacity), bytes;
+    bool mirrored = c->mirror != NULL;
     char *data;
 
     if (plane < capacity || plane > SIZE_MAX / 128 / (c->ncomp * c->size)) {
@@ -128,7 +157,7 @@ static int column_grow(struct particles *p, struct column *c, size_t capacity, s
     c->data = data;
     c->plane = plane;
     p->arena_bytes += bytes;
-    return 0;
+    return mirrored ? mirror_alloc(p, c, e) : 0;
 }
 
 /* Sets elements [first, last) of every component to zero. */
@@ -185,12 +214,12 @@ bool particles_is_valid(const struct particles *p)
         const struct column *c = &p->column[k];
 
         if (!c->name || !c->data || c->ncomp != property_ncomp(c->type, p->dim) ||
-            c->size != property_size(c->type) || c->plane < p->capacity + PARTICLES_PAD ||
-            c->plane * c->size % ALIGN != 0 || (uintptr_t)c->data % ALIGN != 0 ||
-            particles_find(p, c->name) != (int)k) {
+            (c->size != property_size(c->type) && !(column_is_real(c) && c->size == 4)) ||
+            c->plane < p->capacity + PARTICLES_PAD || c->plane * c->size % ALIGN != 0 ||
+            (uintptr_t)c->data % ALIGN != 0 || particles_find(p, c->name) != (int)k) {
             return false;
         }
-        bytes += column_bytes(p, c, c->plane);
+        bytes += column_bytes(p, c, c->plane) + (c->mirror ? mirror_bytes(p, c, c->plane) : 0);
     }
     return bytes == p->arena_bytes;
 }
@@ -263,11 +292,40 @@ double *particles_real(const struct particles *p, const char *name, uint32_t c)
 {
     int k = particles_find(p, name);
 
-    if (k < 0 || p->column[k].type == SPH_INT32 || p->column[k].type == SPH_INT64 ||
+    if (k < 0 || !column_is_real(&p->column[k]) || p->column[k].size != sizeof(double) ||
         c >= p->column[k].ncomp) {
         return NULL;
     }
     return (double *)p->column[k].data + c * p->column[k].plane;
+}
+
+int particles_hold(struct particles *p, int column, size_t size, struct error *e)
+{
+    struct column *c = &p->column[column], old = *c;
+
+    if (c->size == size) {
+        return 0;
+    }
+    c->size = size;
+    c->data = c->mirror = NULL;
+    if (column_grow(p, c, p->capacity, 0, e) != 0) {
+        *c = old;
+        return -1;
+    }
+    for (uint32_t k = 0; k < c->ncomp; k++) {
+        for (size_t i = 0; i < p->n + p->n_ghost; i++) {
+            column_set(c, k, i, column_get(&old, k, i));
+        }
+    }
+    column_release(p, &old);
+    return 0;
+}
+
+int particles_mirror(struct particles *p, int column, struct error *e)
+{
+    struct column *c = &p->column[column];
+
+    return c->mirror || c->size != 8 ? 0 : mirror_alloc(p, c, e);
 }
 
 /* Leaves every column open to the core, whatever the audit had closed. */
@@ -405,12 +463,24 @@ sph_column particles_column(const struct particles *p, int column)
     return view;
 }
 
+sph_column particles_column4(const struct particles *p, int column)
+{
+    sph_column view = particles_column(p, column);
+
+    if (p->column[column].mirror) {
+        view.data = p->column[column].mirror;
+    }
+    return view;
+}
+
 size_t particles_bytes(const struct particles *p)
 {
     size_t bytes = 0;
 
     for (size_t k = 0; k < p->n_column; k++) {
-        bytes += p->column[k].ncomp * p->column[k].size;
+        const struct column *c = &p->column[k];
+
+        bytes += c->ncomp * (c->size + (c->mirror ? 4 : 0));
     }
     return bytes;
 }
@@ -421,6 +491,9 @@ int particles_guard(struct particles *p, int column, int access)
     int protection = access <= 0 ? PROT_NONE : access == 1 ? PROT_READ : PROT_READ | PROT_WRITE;
 
     if (!p->guarded) {
+        return -1;
+    }
+    if (c->mirror && mprotect(c->mirror, mirror_bytes(p, c, c->plane), protection) != 0) {
         return -1;
     }
     return mprotect(c->data, column_bytes(p, c, c->plane), protection) == 0 ? 0 : -1;
@@ -435,6 +508,10 @@ int particles_at_address(const struct particles *p, const void *address)
         size_t bytes = column_bytes(p, c, c->plane) + (p->guarded ? page_size() : 0);
 
         if (a >= (uintptr_t)c->data && a - (uintptr_t)c->data < bytes) {
+            return (int)k;
+        }
+        bytes = mirror_bytes(p, c, c->plane) + (p->guarded ? page_size() : 0);
+        if (c->mirror && a >= (uintptr_t)c->mirror && a - (uintptr_t)c->mirror < bytes) {
             return (int)k;
         }
     }

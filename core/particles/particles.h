@@ -1,8 +1,10 @@
 /* particles/particles.h -- a particle array: named property columns, structure of arrays.
  *
  * Real particles stand first, [0, n); their ghosts follow, [n, n + n_ghost). Each component of a
- * column is 64-byte aligned and readable PARTICLES_PAD elements past `capacity`. Knows nothing of
- * neighbours, scenes or physics. */
+ * column is 64-byte aligned and readable PARTICLES_PAD elements past `capacity`. A real column is
+ * held in doubles or in floats, and one in doubles may have a mirror besides: a copy of 4-byte
+ * elements, which whoever reads it keeps up to date. Knows nothing of neighbours, scenes or
+ * physics. */
 #ifndef PARTICLES_PARTICLES_H
 #define PARTICLES_PARTICLES_H
 
@@ -19,13 +21,34 @@ struct column {
     char *name, *unit, *doc;
     uint32_t type;  /* SPH_SCALAR ... */
     uint32_t ncomp; /* components in this dimension */
-    size_t size;    /* bytes of an element: 8 or 4 */
+    size_t size;    /* bytes of an element: 8 or 4; 4 of a real: floats */
     size_t plane;   /* elements from one component to the next */
     bool state;     /* carried from step to step: initial, integrated or user's; saved and sorted.
                      * Others are made anew at each evaluation. */
     bool output;    /* goes to snapshots */
     void *data;
+    void *mirror; /* NULL, or as many elements of 4 bytes; ghosts included */
 };
+
+static inline bool column_is_real(const struct column *c)
+{
+    return c->type != SPH_INT32 && c->type != SPH_INT64;
+}
+
+/* Component k of particle i of a real column, however it is held. */
+static inline double column_get(const struct column *c, uint32_t k, size_t i)
+{
+    return c->size == sizeof(float) ? (double)((const float *)c->data)[k * c->plane + i]
+                                    : ((const double *)c->data)[k * c->plane + i];
+}
+
+static inline void column_set(const struct column *c, uint32_t k, size_t i, double value)
+{
+    if (c->size == sizeof(float))
+        ((float *)c->data)[k * c->plane + i] = (float)value;
+    else
+        ((double *)c->data)[k * c->plane + i] = value;
+}
 
 struct particles {
     char *name;
@@ -54,6 +77,12 @@ int particles_find(const struct particles *p, const char *name);
 /* Component c of a real column, or NULL if there is no such column. */
 double *particles_real(const struct particles *p, const char *name, uint32_t c);
 
+/* From now on a real column is held in doubles (size 8) or floats (4); its values are kept, as well
+ * as that can be. What it pointed to is gone. */
+int particles_hold(struct particles *p, int column, size_t size, struct error *e);
+/* Gives a column held in doubles a mirror; its contents are the caller's business. */
+int particles_mirror(struct particles *p, int column, struct error *e);
+
 /* Room for n + n_ghost particles; contents are kept, new elements are zero. When n changes, what
  * the ghosts held is lost. Columns may move: fetch pointers anew. */
 int particles_resize(struct particles *p, size_t n, size_t n_ghost, struct error *e);
@@ -62,9 +91,11 @@ int particles_permute(struct particles *p, const uint32_t *order, struct error *
 /* new[i] = old[index[i]] for i < n, in every column; an index may come again, or not at all. Ghosts
  * are lost. */
 int particles_gather(struct particles *p, const uint32_t *index, size_t n, struct error *e);
-/* The column as the ABI hands it over. */
+/* The column as the ABI hands it over; its mirror likewise, or the column itself if it is held in 4
+ * bytes. */
 sph_column particles_column(const struct particles *p, int column);
-/* Bytes of a particle over all columns. */
+sph_column particles_column4(const struct particles *p, int column);
+/* Bytes of a particle over all columns, mirrors included. */
 size_t particles_bytes(const struct particles *p);
 
 /* The audit: with `guarded` set before any column is added, every column lives on pages of its own;

@@ -188,20 +188,66 @@ static int bind_assignment(struct plan *plan, const struct step *s, size_t array
     return bind_columns(plan, &p->dst, array, p->use.item, DST_ANY, e);
 }
 
+/* Of a function: its frame, made if it is new. */
+static int find_frame(struct plan *plan, const struct pass *p, const struct step *s, size_t *frame,
+                      struct error *e)
+{
+    const char *over = p->function->over;
+    const struct box *box = &plan->scene->box;
+    for (*frame = 0; over && *frame < plan->n_frame; (*frame)++)
+        if (strcmp(plan->frame[*frame].name, over) == 0 &&
+            plan->frame[*frame].frozen == (p->function->frozen != 0))
+            return 0;
+    if (!over)
+        return 0;
+    for (int c = 0; box->bounded && c < plan->dim; c++)
+        if (box->side[c][0] != SIDE_OPEN || box->side[c][1] != SIDE_OPEN)
+            return document_fail(plan->scene->doc, s->node ? s->node : plan->scene->scheme.node, e,
+                                 "%s looks for neighbours in \"%s\", which is not possible in a "
+                                 "domain with periodic or mirror sides",
+                                 s->name, over);
+    struct frame *bigger = plan_grow(plan->frame, &plan->n_frame, sizeof *bigger);
+    if (!bigger)
+        return error_memory(e, "the plan", sizeof *bigger);
+    plan->frame = bigger;
+    plan->frame[*frame] = (struct frame){over, p->function->frozen != 0};
+    return 0;
+}
+
+/* The list of this pair in this frame, made if it is new; it reaches as far as any pass asks. */
+static int find_list(struct plan *plan, const struct pass *p, size_t src, size_t *list,
+                     struct error *e)
+{
+    for (*list = 0; *list < plan->n_list; (*list)++) {
+        struct plan_list *l = &plan->list[*list];
+        if (l->dst != p->dst.array || l->src != src || l->frame != p->frame)
+            continue;
+        l->reach = p->reach > l->reach ? p->reach : l->reach;
+        return 0;
+    }
+    struct plan_list *bigger = plan_grow(plan->list, &plan->n_list, sizeof *bigger);
+    if (!bigger)
+        return error_memory(e, "the plan", sizeof *bigger);
+    plan->list = bigger;
+    plan->list[*list] = (struct plan_list){p->dst.array, src, p->frame, p->reach};
+    return 0;
+}
+
 static int bind_sources(struct plan *plan, struct pass *p, const struct step *s, struct error *e)
 {
     p->src = calloc(plan->n_array, sizeof *p->src);
-    if (!p->src)
+    p->list = calloc(plan->n_array, sizeof *p->list);
+    if (!p->src || !p->list)
         return error_memory(e, "the plan", plan->n_array * sizeof *p->src);
+    if (find_frame(plan, p, s, &p->frame, e))
+        return -1;
     for (size_t a = 0; a < plan->n_array; a++) {
         if (!listed(s->from, s->n_from, plan->array[a].p.name))
             continue;
-        if (bind_columns(plan, &p->src[p->n_src], a, p->use.item, SPH_SRC_READ, e))
+        if (bind_columns(plan, &p->src[p->n_src], a, p->use.item, SPH_SRC_READ, e) ||
+            find_list(plan, p, a, &p->list[p->n_src], e))
             return -1;
         p->n_src++;
-        uint32_t *pair = &plan->pair[p->dst.array * plan->n_array + a];
-        if (p->reach > *pair)
-            *pair = p->reach;
     }
     return 0;
 }
@@ -227,9 +273,10 @@ static int bind_population(struct plan *plan, const struct pass *p, const struct
     return 0;
 }
 
-static int bind_function(struct plan *plan, const struct step *s, size_t array, struct error *e)
+/* parts: of a function that stands for several steps, from s on, those; else 1. */
+static int bind_function(struct plan *plan, const struct step *s, size_t parts,
+                         const struct entry *entry, size_t array, struct error *e)
 {
-    const struct entry *entry = registry_find(plan->registry, KIND_FUNCTION, s->name);
     if (!entry)
         return plan_unknown(plan, s->node ? s->node : plan->scene->scheme.node, KIND_FUNCTION,
                             s->name, e);
@@ -237,9 +284,16 @@ static int bind_function(struct plan *plan, const struct step *s, size_t array, 
     if (!(f->item->dims & (1u << plan->dim)))
         return document_fail(plan->scene->doc, s->node ? s->node : plan->scene->scheme.node, e,
                              "%s does not work in %d dimensions", s->name, plan->dim);
-    struct pass *p = new_pass(plan, s, array, e);
-    if (!p || use_init(&p->use, entry, f->item, f->life, e) || configure(plan, &p->use, s, e) ||
-        create(plan, &p->use, s->node ? s->node : plan->scene->scheme.node, e))
+    struct step whole = *s; /* under its own name */
+    if (parts > 1)
+        whole.name = (char *)(uintptr_t)f->item->name;
+    struct pass *p = new_pass(plan, &whole, array, e);
+    if (!p || use_init(&p->use, entry, f->item, f->life, e))
+        return -1;
+    for (size_t k = 0; k < parts; k++)
+        if (configure(plan, &p->use, s + k, e))
+            return -1;
+    if (create(plan, &p->use, s->node ? s->node : plan->scene->scheme.node, e))
         return -1;
     p->function = f;
     p->shape = f->shape;
@@ -279,38 +333,77 @@ static int bind_reductions(struct plan *plan, size_t pass, struct error *e)
     return 0;
 }
 
+/* Nothing that the sweeps read of sources is written by this pass, so that one chunk of destinations may
+ * be done with while another has not begun. */
+static bool is_local(const struct plan *plan, const struct pass *p)
+{
+    for (size_t s = 0; s < p->n_src; s++) {
+        const struct plan_array *from = &plan->array[p->src[s].array];
+        for (uint32_t k = 0; k < p->use.item->props.count; k++)
+            if (p->src[s].column[k] >= 0 && pass_writes(p, p->src[s].array, p->src[s].column[k]))
+                return false;
+        if (pass_writes(p, p->src[s].array, from->position) ||
+            pass_writes(p, p->src[s].array, from->smoothing))
+            return false;
+    }
+    return true;
+}
+
+/* The step that stands at `first` in the recipe, or as many as one function does at once; how many. */
+static size_t bind_step(struct plan *plan, size_t first, struct error *e)
+{
+    const struct step *s = &plan->step[first];
+    const struct entry *entry = NULL;
+    const size_t parts = fusion_find(plan, first, &entry);
+    if (!parts && s->kind == KIND_FUNCTION && !s->expression)
+        entry = registry_find(plan->registry, KIND_FUNCTION, s->name);
+    if (check_arrays(plan, s, s->to, s->n_to, e) || check_arrays(plan, s, s->from, s->n_from, e))
+        return 0;
+    for (size_t a = 0; a < plan->n_array; a++) {
+        if (!listed(s->to, s->n_to, plan->array[a].p.name))
+            continue;
+        const int status = s->expression ? bind_assignment(plan, s, a, e)
+                           : s->kind == KIND_EOS
+                               ? bind_eos(plan, s, a, e)
+                               : bind_function(plan, s, parts ? parts : 1, entry, a, e);
+        if (status)
+            return 0;
+    }
+    return parts ? parts : 1;
+}
+
 int bind_passes(struct plan *plan, struct error *e)
 {
-    plan->pair = calloc(plan->n_array * plan->n_array + 1, sizeof *plan->pair);
-    if (!plan->pair)
-        return error_memory(e, "the plan", plan->n_array * plan->n_array);
+    plan->frame = plan_grow(NULL, &plan->n_frame, sizeof *plan->frame);
+    if (!plan->frame)
+        return error_memory(e, "the plan", sizeof *plan->frame);
+    plan->frame[0] = (struct frame){"x", false};
     plan->reach_scale = 0.0;
-    for (size_t i = 0; i < plan->n_step; i++) {
-        const struct step *s = &plan->step[i];
-        if (check_arrays(plan, s, s->to, s->n_to, e) ||
-            check_arrays(plan, s, s->from, s->n_from, e))
+    for (size_t i = 0, n; i < plan->n_step; i += n) {
+        n = bind_step(plan, i, e);
+        if (!n)
             return -1;
-        for (size_t a = 0; a < plan->n_array; a++) {
-            if (!listed(s->to, s->n_to, plan->array[a].p.name))
-                continue;
-            int status = s->expression         ? bind_assignment(plan, s, a, e)
-                         : s->kind == KIND_EOS ? bind_eos(plan, s, a, e)
-                                               : bind_function(plan, s, a, e);
-            if (status)
-                return -1;
-        }
     }
     if (plan->reach_scale <= 0.0)
         plan->reach_scale = 1.0;
     for (size_t i = 0; i < plan->n_pass; i++) {
         struct pass *p = &plan->pass[i];
-        p->space = calloc(2 * p->use.item->props.count + 1, sizeof *p->space);
+        p->local = is_local(plan, p);
+        p->space = calloc((2 + p->n_src) * p->use.item->props.count + 1, sizeof *p->space);
         if (!p->space)
             return error_memory(e, "the plan", p->use.item->props.count * sizeof *p->space);
         if (bind_reductions(plan, i, e))
             return -1;
     }
     return 0;
+}
+
+const struct plan_list *plan_pair(const struct plan *plan, size_t dst, size_t src)
+{
+    for (size_t i = 0; i < plan->n_list; i++)
+        if (plan->list[i].dst == dst && plan->list[i].src == src && plan->list[i].frame == 0)
+            return &plan->list[i];
+    return NULL;
 }
 
 void bind_free(struct plan *plan)
@@ -326,10 +419,12 @@ void bind_free(struct plan *plan)
         for (size_t k = 0; k < p->n_src; k++)
             free(p->src[k].column);
         free(p->src);
+        free(p->list);
     }
     free(plan->pass);
     free(plan->reduction);
-    free(plan->pair);
+    free(plan->frame);
+    free(plan->list);
 }
 
 static bool binding_has(const struct pass *p, const struct binding *b, size_t array, int column,

@@ -114,8 +114,8 @@ static void print_array(const struct plan *plan, size_t index, FILE *out)
     const struct plan_array *a = &plan->array[index];
     fprintf(out, "  %s: %llu particles, %zu columns, %zu bytes a particle (lists: %.0f more)\n",
             a->p.name, (unsigned long long)count(plan, index), a->p.n_column,
-            particles_bytes(&a->p),
-            plan->has_kernel ? 4.0 * (neighbours(plan, a) * 2.0) / SPH_LANES * 2.0 : 0.0);
+            plan_bytes(plan, index),
+            plan->has_kernel ? 2.0 * (neighbours(plan, a) * 2.6) / SPH_LANES : 0.0);
     for (size_t c = 0; c < a->p.n_column; c++) {
         const struct column *column = &a->p.column[c];
         fprintf(out, "    %-8s %-16s %-5s %-12s ", column->name, type_name(column->type),
@@ -265,7 +265,7 @@ cJSON *plan_json(const struct plan *plan)
     for (size_t a = 0; arrays && a < plan->n_array; a++) {
         const struct particles *p = &plan->array[a].p;
         cJSON *one = cJSON_AddObjectToObject(arrays, p->name);
-        cJSON_AddNumberToObject(one, "bytes_per_particle", (double)particles_bytes(p));
+        cJSON_AddNumberToObject(one, "bytes_per_particle", (double)plan_bytes(plan, a));
         cJSON *columns = cJSON_AddArrayToObject(one, "columns");
         for (size_t c = 0; columns && c < p->n_column; c++)
             cJSON_AddItemToArray(columns, cJSON_CreateString(p->column[c].name));

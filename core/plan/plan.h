@@ -38,6 +38,26 @@ struct step {
     const char *expression;     /* assigned to `of`; NULL: a function */
 };
 
+/* Whose places neighbours are looked for in: the position's, or another column's. */
+struct frame {
+    const char *name; /* of the column; frame 0 is "x" */
+    bool frozen;      /* found once */
+};
+
+/* Sources of one array for the destinations of another, that some pass asks for. */
+struct plan_list {
+    size_t dst, src, frame;
+    uint32_t reach; /* SPH_GATHER or SPH_SYMMETRIC */
+};
+
+/* How exactly a run computes (README, precision). */
+enum precision {
+    PRECISION_DOUBLE, /* everything in doubles */
+    PRECISION_MIXED,  /* pair sums in floats, of exact differences of positions; state in doubles */
+    PRECISION_SINGLE  /* all but the positions in floats */
+};
+extern const char *const precision_name[3];
+
 /* The columns of a pass in one array, in the item's declared order. */
 struct binding {
     size_t array;
@@ -59,10 +79,14 @@ struct pass {
     const sph_function *function; /* NULL for an equation of state */
     struct binding dst;
     struct binding *src;
+    size_t *list; /* [n_src]: index into plan.list */
     size_t n_src;
+    size_t frame;
+    uint32_t real;                 /* what its sweeps work in: SPH_F64 or SPH_F32 */
+    bool local;                    /* a destination may be finished before another is begun */
     struct assignment *assignment; /* of an expression, or NULL */
     bool serial;                   /* one thread only */
-    sph_column *space; /* room for the columns of a batch: destination's, then source's */
+    sph_column *space; /* room for columns: destination's in doubles, for sweeps, each source's */
     /* Cost, filled in by the run. */
     double seconds;
     uint64_t sweeps, pairs;
@@ -89,6 +113,8 @@ struct plan_array {
     bool *given;     /* per column: set by a field */
     bool *required;  /* per column: an initial value is needed */
     double *initial; /* per column: declared default; NaN: none */
+    bool *in_floats; /* per column: held in floats while the run goes on ... */
+    bool *mirrored;  /* ... or in doubles with a mirror in floats */
     struct use eos;  /* of its material; entry NULL: none */
     int position, velocity, smoothing, mass,
         id; /* columns; velocity: the rate of the position, or -1 */
@@ -112,7 +138,11 @@ struct plan {
     size_t n_pass;
     struct reduction *reduction;
     size_t n_reduction;
-    uint32_t *pair;     /* [dst * n_array + src]: 0 no function asks, SPH_GATHER, SPH_SYMMETRIC */
+    struct frame *frame;
+    size_t n_frame;
+    struct plan_list *list;
+    size_t n_list;
+    enum precision precision;
     double reach_scale; /* largest over the functions */
     struct use *exact;  /* of scene.compare, one each */
     int64_t next_id;    /* of a particle yet to be made */
@@ -125,6 +155,11 @@ int plan_make(struct plan *plan, struct registry *r, const struct scene *s, bool
 /* Makes the particles and completes their initial state (the inverse equation of state). */
 int plan_fill(struct plan *plan, struct error *e);
 void plan_free(struct plan *plan);
+
+/* The list that some pass asks for of these arrays' positions, or NULL. */
+const struct plan_list *plan_pair(const struct plan *plan, size_t dst, size_t src);
+/* Bytes of a particle of an array while the run goes on: columns and their mirrors. */
+size_t plan_bytes(const struct plan *plan, size_t array);
 
 /* Columns of array a that a pass reads from it, writes in it. */
 bool pass_writes(const struct pass *p, size_t array, int column);

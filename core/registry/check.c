@@ -121,6 +121,29 @@ static int check_sweeps(const sph_function *f, struct error *e)
     return 0;
 }
 
+/* What the sweeps work in, and where. */
+static int check_loop(const sph_function *f, struct error *e)
+{
+    const sph_prop *p;
+
+    if (f->reals & ~(SPH_F64 | SPH_F32))
+        return error_set(e, EXIT_REFUSED, "reals is %u, which this sph does not know", f->reals);
+    if (f->frozen > 1 || (f->frozen && !f->over))
+        return error_set(e, EXIT_REFUSED, "frozen is %u, %s", f->frozen,
+                         f->over ? "neither 0 nor 1" : "but over names no property");
+    if (!f->over)
+        return 0;
+    if (f->shape != SPH_PAIR)
+        return error_set(e, EXIT_REFUSED, "over is set, but a point function has no neighbours");
+    p = check_is_word(f->over, false) ? check_find_prop(&f->item->props, f->over) : NULL;
+    if (!p || p->type != SPH_VECTOR || !(p->access & SPH_DST_READ) || !(p->access & SPH_SRC_READ))
+        return error_set(e, EXIT_REFUSED,
+                         "over is \"%s\", which is not declared as a vector that is read of "
+                         "destinations and sources",
+                         check_is_word(f->over, false) ? f->over : "?");
+    return 0;
+}
+
 static int check_function(const sph_function *f, struct error *e)
 {
     if (f->shape != SPH_POINT && f->shape != SPH_PAIR)
@@ -134,7 +157,7 @@ static int check_function(const sph_function *f, struct error *e)
                          REACH_MAX);
     if (f->shape == SPH_POINT && check_no_sources(&f->item->props, "a point function", e))
         return -1;
-    if (check_sweeps(f, e) || (f->device && check_device_body(f, e)) ||
+    if (check_sweeps(f, e) || check_loop(f, e) || (f->device && check_device_body(f, e)) ||
         check_rates(&f->rates, &f->item->props, e))
         return -1;
     return check_reductions(&f->reductions, &f->item->props, e);

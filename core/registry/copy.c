@@ -23,6 +23,7 @@ static const size_t first_device = UP_TO(sph_device_body, param);
 static const size_t first_item = UP_TO(sph_item, props);
 static const size_t first_life = UP_TO(sph_life, destroy);
 static const size_t first_population = UP_TO(sph_population, born_props);
+static const size_t first_fusion = UP_TO(sph_fusion, parts);
 static const size_t first_state = UP_TO(sph_state, restore);
 
 static const struct {
@@ -263,6 +264,16 @@ const sph_state *copy_state(void **memory, const sph_state *in, struct error *e)
     sph_state *out = take(memory, sizeof(*out), e);
 
     return !out || copy_struct(out, sizeof(*out), in, first_state, "descriptor", e) ? NULL : out;
+}
+
+const sph_fusion *copy_fusion(void **memory, const sph_fusion *in, struct error *e)
+{
+    sph_fusion *out = take(memory, sizeof(*out), e);
+
+    if (!out || copy_struct(out, sizeof(*out), in, first_fusion, "descriptor", e) ||
+        copy_list(memory, &out->parts, sizeof(const char *), sizeof(const char *), "parts", e))
+        return NULL;
+    return out;
 }
 
 /* Where a descriptor keeps its item, by kind. */

@@ -22,6 +22,7 @@ void copy_free(void *memory);
 
 /* The same of what an extension declares of an item, in memory that its entry has already. */
 const sph_population *copy_population(void **memory, const sph_population *in, struct error *e);
+const sph_fusion *copy_fusion(void **memory, const sph_fusion *in, struct error *e);
 const sph_state *copy_state(void **memory, const sph_state *in, struct error *e);
 
 /* The item of a copy. */

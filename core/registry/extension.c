@@ -40,9 +40,7 @@ static sph_status time_step_propose(const sph_batch *b, double dt)
 
 /* -- Of an item -------- */
 
-/* The item of the plugin whose init runs now, or NULL with the sentence set. */
-static struct entry *own_entry(struct registry *r, enum kind kind, const char *name,
-                               struct error *e)
+struct entry *extension_own(struct registry *r, enum kind kind, const char *name, struct error *e)
 {
     for (size_t i = 0; check_is_name(name) && i < r->n_entry; i++) {
         struct entry *x = &r->entry[i];
@@ -85,7 +83,7 @@ static int check_born(const sph_list *props, struct error *e)
 static int declare_population(struct registry *r, const char *function, const sph_population *in,
                               struct error *e)
 {
-    struct entry *x = own_entry(r, KIND_FUNCTION, function, e);
+    struct entry *x = extension_own(r, KIND_FUNCTION, function, e);
     const sph_population *p;
 
     if (!x)
@@ -110,7 +108,7 @@ static int declare_population(struct registry *r, const char *function, const sp
 static int declare_state(struct registry *r, enum kind kind, const char *name, const sph_state *in,
                          struct error *e)
 {
-    struct entry *x = own_entry(r, kind, name, e);
+    struct entry *x = extension_own(r, kind, name, e);
     const sph_state *s;
 
     if (!x)
@@ -157,8 +155,19 @@ static sph_status state_declare(const sph_host *host, const char *kind, const ch
     return registry_refuse(r, &e);
 }
 
+static sph_status fusion_say(const sph_host *host, const sph_fusion *f)
+{
+    struct registry *r = host ? host->context : NULL;
+    struct error e = {0};
+
+    if (!r || !registry_is_loading(r))
+        return SPH_E_INVALID;
+    return fusion_declare(r, f, &e) ? registry_refuse(r, &e) : SPH_OK;
+}
+
 /* -- By id -------- */
 
+static const sph_fusions fusions = {sizeof fusions, 0, fusion_say};
 static const sph_tables tables = {sizeof tables, 0, tables_get};
 static const sph_reductions reductions = {sizeof reductions, 0, reductions_value};
 static const sph_time_step time_step = {sizeof time_step, 0, time_step_propose};
@@ -166,6 +175,7 @@ static const sph_population_ext population = {sizeof population, 0, population_d
 static const sph_state_ext state = {sizeof state, 0, state_declare};
 
 const struct extension extension[] = {
+    {SPH_EXT_FUSION, "functions that share a sweep over the neighbours", &fusions},
     {SPH_EXT_POPULATION, "functions that remove and create particles", &population},
     {SPH_EXT_REDUCTIONS, "global sums, minima and maxima, for other functions", &reductions},
     {SPH_EXT_STATE, "an item's own state in a checkpoint", &state},

@@ -11,6 +11,12 @@ struct extension {
 extern const struct extension extension[];
 extern const size_t n_extension;
 
+/* For extensions: the item of the plugin whose init runs now; NULL, with a sentence, if it has
+ * registered none of that kind and name. */
+struct entry *extension_own(struct registry *r, enum kind kind, const char *name, struct error *e);
+/* fusion.c: keeps which parts a function stands for; fails if it declares less than they do. */
+int fusion_declare(struct registry *r, const sph_fusion *in, struct error *e);
+
 /* NULL: there is none of that id. */
 const void *extension_find(const char *id);
 

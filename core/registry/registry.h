@@ -33,7 +33,9 @@ struct entry {
     size_t plugin;                    /* index into registry.plugin */
     const sph_population *population; /* of a function; or NULL */
     const sph_state *state;           /* or NULL */
-    void *memory;                     /* private: what the copies lie in */
+    const char *const *part;          /* of a function that does the work of n_part others */
+    size_t n_part;
+    void *memory; /* private: what the copies lie in */
 };
 
 struct plugin {

@@ -42,17 +42,19 @@ static bool wanted(const struct scene_compare *c, const char *name)
     return c->n_fields == 0;
 }
 
-/* Columns for the exact solution's batch: the array's own where it reads, fresh ones where it writes. */
+/* Columns for the exact solution's batch: the array's own where it reads doubles, fresh ones where it
+ * writes, or reads what is held in floats. */
 static int exact_columns(const struct plan_array *a, const sph_item *item, sph_column *column,
                          struct error *e)
 {
     for (uint32_t k = 0; k < item->props.count; k++) {
         const sph_prop *prop = list_at(&item->props, k);
-        if (!(prop->access & SPH_DST_WRITE)) {
-            int c = particles_find(&a->p, prop->name);
-            if (c < 0)
-                return error_set(e, EXIT_USAGE, "%s needs \"%s\", which array \"%s\" has not",
-                                 item->name, prop->name, a->p.name);
+        const bool reads = !(prop->access & SPH_DST_WRITE);
+        const int c = particles_find(&a->p, prop->name);
+        if (reads && c < 0)
+            return error_set(e, EXIT_USAGE, "%s needs \"%s\", which array \"%s\" has not",
+                             item->name, prop->name, a->p.name);
+        if (reads && a->p.column[c].size == property_size(prop->type)) {
             column[k] = particles_column(&a->p, c);
             continue;
         }
@@ -63,6 +65,9 @@ static int exact_columns(const struct plan_array *a, const sph_item *item, sph_c
             return error_memory(e, "an exact solution", plane * ncomp * sizeof(double));
         memset(data, 0, plane * ncomp * sizeof(double));
         column[k] = (sph_column){data, plane, prop->type, ncomp};
+        for (uint32_t q = 0; reads && q < ncomp; q++)
+            for (size_t i = 0; i < a->p.n; i++)
+                ((double *)data)[q * plane + i] = column_get(&a->p.column[c], q, i);
     }
     return 0;
 }
@@ -117,12 +122,11 @@ static int compare(const struct run *r, size_t index, struct summary_error **out
     }
     for (uint32_t k = 0; column && k < count; k++) {
         const sph_prop *prop = list_at(&use->item->props, k);
-        if (!(prop->access & SPH_DST_WRITE))
-            continue;
-        int f = particles_find(&a->p, prop->name);
-        if (!status && f >= 0 && wanted(c, prop->name))
+        const int f = particles_find(&a->p, prop->name);
+        if ((prop->access & SPH_DST_WRITE) && !status && f >= 0 && wanted(c, prop->name))
             status = add_error(out, n, a, &a->p.column[f], c->exact, &column[k], inside, e);
-        free(column[k].data);
+        if (f < 0 || column[k].data != a->p.column[f].data)
+            free(column[k].data);
     }
     free(column);
     free(inside);

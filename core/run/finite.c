@@ -22,9 +22,18 @@ static size_t first_bad(const double *value, size_t n, bool finite)
     return n;
 }
 
-static bool is_real(const struct column *c)
+static size_t first_bad4(const float *value, size_t n, bool finite)
 {
-    return c->type != SPH_INT32 && c->type != SPH_INT64;
+    const float most = finite ? FLT_MAX : INFINITY;
+    long bad = 0;
+    const long end = (long)n;
+#pragma omp simd reduction(+ : bad)
+    for (long i = 0; i < end; i++)
+        bad += !(fabsf(value[i]) <= most);
+    for (size_t i = 0; bad && i < n; i++)
+        if (!(fabsf(value[i]) <= most))
+            return i;
+    return n;
 }
 
 /* The first bad element of a column, over its components; false: there is none. */
@@ -32,11 +41,13 @@ static bool find_bad(const struct plan_array *a, int column, bool finite, size_t
                      double *value)
 {
     const struct column *c = &a->p.column[column];
-    for (uint32_t k = 0; is_real(c) && k < c->ncomp; k++) {
-        const double *plane = (const double *)c->data + k * c->plane;
-        *particle = first_bad(plane, a->p.n, finite);
+    for (uint32_t k = 0; column_is_real(c) && k < c->ncomp; k++) {
+        const size_t at = k * c->plane;
+        *particle = c->size == sizeof(float)
+                        ? first_bad4((const float *)c->data + at, a->p.n, finite)
+                        : first_bad((const double *)c->data + at, a->p.n, finite);
         if (*particle < a->p.n) {
-            *value = plane[*particle];
+            *value = column_get(c, k, *particle);
             return true;
         }
     }

@@ -14,88 +14,97 @@ static double support(const struct plan *plan)
     return plan->kernel.support * plan->reach_scale;
 }
 
-static bool asks(const struct plan *plan)
+static double *plane_of(const struct plan_array *a, int column, int c)
 {
-    for (size_t k = 0; k < plan->n_array * plan->n_array; k++)
-        if (plan->pair[k])
-            return true;
-    return false;
-}
-
-static double largest_h(const struct plan_array *a)
-{
-    double h = 0.0;
-    const double *column = a->p.column[a->smoothing].data;
-    for (size_t i = 0; i < a->p.n; i++)
-        h = fmax(h, column[i]);
-    return h;
-}
-
-static double *position(const struct plan_array *a, int c)
-{
-    const struct column *x = &a->p.column[a->position];
+    const struct column *x = &a->p.column[column];
     return (double *)x->data + (size_t)c * x->plane;
 }
 
-static double largest_displacement(const struct run *r)
+/* The column of a frame's places in an array, or -1. */
+static int place_in(const struct run *r, size_t frame, size_t array)
 {
-    double d2max = 0.0;
-    for (size_t a = 0; a < r->plan->n_array; a++) {
-        const struct plan_array *pa = &r->plan->array[a];
-        size_t n = pa->p.n;
-        for (size_t i = 0; i < n; i++) {
-            double d2 = 0.0;
-            for (int c = 0; c < r->plan->dim; c++) {
-                double d = position(pa, c)[i] - r->reference[a][(size_t)c * n + i];
-                d2 += d * d;
-            }
-            if (isnan(d2))
-                return NAN; /* must not pass for "has not moved", nor be forgotten at the next particle */
-            d2max = fmax(d2max, d2);
-        }
+    const struct plan_array *a = &r->plan->array[array];
+    return frame == 0 ? a->position : particles_find(&a->p, r->plan->frame[frame].name);
+}
+
+/* Does any list of this frame have this array? */
+static bool in_frame(const struct run *r, size_t frame, size_t array)
+{
+    for (size_t k = 0; k < r->plan->n_list; k++) {
+        const struct plan_list *l = &r->plan->list[k];
+        if (l->frame == frame && (l->dst == array || l->src == array))
+            return true;
     }
-    return sqrt(d2max);
+    return false;
+}
+
+/* -- Are they still right? ---------------------------------------------------------------------- */
+
+static struct cloud cloud_of(const struct run *r, size_t array, size_t frame, bool ghosts)
+{
+    const struct plan_array *a = &r->plan->array[array];
+    struct cloud cloud = {.dim = r->plan->dim, .scale = support(r->plan)};
+    cloud.n = a->p.n + (ghosts ? a->p.n_ghost : 0);
+    cloud.h = a->p.column[a->smoothing].data;
+    for (int c = 0; c < r->plan->dim; c++)
+        cloud.x[c] = plane_of(a, place_in(r, frame, array), c);
+    return cloud;
+}
+
+/* The arrays that take part in a frame: their clouds; how many. */
+static size_t clouds_of(const struct run *r, size_t frame, struct cloud *cloud)
+{
+    size_t n = 0;
+    for (size_t a = 0; a < r->plan->n_array; a++)
+        if (in_frame(r, frame, a))
+            cloud[n++] = cloud_of(r, a, frame, false);
+    return n;
 }
 
 static bool still_right(const struct run *r)
 {
-    if (!r->lists_made)
-        return false;
-    const double d = 2.0 * largest_displacement(r) / support(r->plan);
-    if (!(d < INFINITY))
-        return false;
-    for (size_t a = 0; a < r->plan->n_array; a++) {
-        const struct plan_array *pa = &r->plan->array[a];
-        const double *h = pa->p.column[pa->smoothing].data;
-        const double *h0 = r->reference[a] + (size_t)r->plan->dim * pa->p.n;
-        for (size_t i = 0; i < pa->p.n; i++)
-            if (!(d + h[i] - h0[i] <= r->skin * h0[i]))
-                return false;
+    bool right = r->lists_made;
+    for (size_t f = 0; right && f < r->plan->n_frame; f++) {
+        if (r->plan->frame[f].frozen)
+            continue;
+        const size_t n = clouds_of(r, f, r->cloud);
+        right = skin_holds(r->kept + f * r->plan->n_array, r->cloud, n, r->skin, r->threads);
     }
-    return true;
+    return right;
 }
+
+static int keep_places(struct run *r, size_t frame, struct error *e)
+{
+    const size_t n = clouds_of(r, frame, r->cloud);
+    for (size_t k = 0; !r->plan->frame[frame].frozen && k < n; k++)
+        if (skin_keep(&r->kept[frame * r->plan->n_array + k], &r->cloud[k], r->threads, e))
+            return -1;
+    return 0;
+}
+
+/* -- Order, ghosts ------------------------------------------------------------------------------ */
 
 static int sort_array(struct run *r, size_t array, struct error *e)
 {
     struct plan_array *a = &r->plan->array[array];
-    size_t n = a->p.n;
+    const size_t n = a->p.n;
     if (n < 2)
         return 0;
-    const double *h = a->p.column[a->smoothing].data;
+    const struct cloud cloud = cloud_of(r, array, 0, false);
     double mean = 0.0;
     for (size_t i = 0; i < n; i++)
-        mean += h[i];
+        mean += cloud.h[i];
     mean /= (double)n;
-    struct cloud cloud = {.dim = r->plan->dim, .n = n, .h = h, .scale = support(r->plan)};
-    for (int c = 0; c < r->plan->dim; c++)
-        cloud.x[c] = position(a, c);
     uint32_t *order = malloc(n * sizeof *order);
     if (!order)
         return error_memory(e, "the order of particles", n * sizeof *order);
-    int status = cell_order(&cloud, a->p.column[a->id].data, support(r->plan) * mean, order, e);
+    int status =
+        cell_order(&cloud, a->p.column[a->id].data, support(r->plan) * mean, r->threads, order, e);
     if (!status)
         status = particles_permute(&a->p, order, e);
     free(order);
+    for (size_t c = 0; c < a->p.n_column; c++)
+        r->mirror_old[array][c] = true;
     return status;
 }
 
@@ -107,8 +116,9 @@ static double largest_overshoot(const struct run *r)
     double most = 0.0;
     for (size_t a = 0; box->bounded && a < r->plan->n_array; a++)
         for (int c = 0; c < r->plan->dim; c++) {
-            const double *x = position(&r->plan->array[a], c);
-            for (size_t i = 0; i < r->plan->array[a].p.n; i++) {
+            const struct plan_array *pa = &r->plan->array[a];
+            const double *x = plane_of(pa, pa->position, c);
+            for (size_t i = 0; i < pa->p.n; i++) {
                 if (box->side[c][0] != SIDE_OPEN)
                     most = fmax(most, box->min[c] - x[i]);
                 if (box->side[c][1] != SIDE_OPEN)
@@ -118,11 +128,25 @@ static double largest_overshoot(const struct run *r)
     return most;
 }
 
+static void find_range_of_h(struct run *r)
+{
+    for (size_t a = 0; a < r->plan->n_array; a++) {
+        const struct plan_array *pa = &r->plan->array[a];
+        const double *h = pa->p.column[pa->smoothing].data;
+        r->h_low[a] = INFINITY;
+        r->h_high[a] = 0.0;
+        for (size_t i = 0; i < pa->p.n; i++) {
+            r->h_low[a] = h[i] < r->h_low[a] ? h[i] : r->h_low[a];
+            r->h_high[a] = h[i] > r->h_high[a] ? h[i] : r->h_high[a];
+        }
+    }
+}
+
 static int make_ghosts(struct run *r, struct error *e)
 {
     double margin = 0.0;
     for (size_t a = 0; a < r->plan->n_array; a++)
-        margin = fmax(margin, largest_h(&r->plan->array[a]));
+        margin = fmax(margin, r->h_high[a]);
     margin = margin * support(r->plan) * (1.0 + r->skin) + largest_overshoot(r);
     for (size_t a = 0; a < r->plan->n_array; a++) {
         struct particles *p = &r->plan->array[a].p;
@@ -130,68 +154,51 @@ static int make_ghosts(struct run *r, struct error *e)
             ghosts_make(&r->ghosts[a], &r->plan->scene->box, p, margin, e))
             return -1;
         for (size_t c = 0; c < p->n_column; c++)
-            r->stale[a][c] = p->n_ghost > 0;
+            run_changed(r, a, (int)c);
         r->stale[a][r->plan->array[a].position] = false;
         r->stale[a][r->plan->array[a].smoothing] = false;
     }
-    return 0;
+    return run_mirror_frame(r, e);
 }
 
-static int keep_reference(struct run *r, struct error *e)
-{
-    for (size_t a = 0; a < r->plan->n_array; a++) {
-        const struct plan_array *pa = &r->plan->array[a];
-        size_t n = pa->p.n, planes = (size_t)r->plan->dim + 1;
-        if (r->reference_n[a] != n) {
-            free(r->reference[a]);
-            r->reference[a] = malloc((n ? n : 1) * planes * sizeof(double));
-            if (!r->reference[a])
-                return error_memory(e, "positions of the lists", n * planes * sizeof(double));
-            r->reference_n[a] = n;
-        }
-        for (int c = 0; c < r->plan->dim; c++)
-            memcpy(r->reference[a] + (size_t)c * n, position(pa, c), n * sizeof(double));
-        memcpy(r->reference[a] + (size_t)r->plan->dim * n, pa->p.column[pa->smoothing].data,
-               n * sizeof(double));
-    }
-    return 0;
-}
-
-static struct cloud cloud_of(const struct run *r, size_t array, bool ghosts)
-{
-    const struct plan_array *a = &r->plan->array[array];
-    struct cloud cloud = {.dim = r->plan->dim, .scale = support(r->plan)};
-    cloud.n = a->p.n + (ghosts ? a->p.n_ghost : 0);
-    cloud.h = a->p.column[a->smoothing].data;
-    for (int c = 0; c < r->plan->dim; c++)
-        cloud.x[c] = position(a, c);
-    return cloud;
-}
+/* -- Lists -------------------------------------------------------------------------------------- */
 
 /* True pairs are counted when the particles are sorted; in between their share of the lists is taken to last. */
-static int make_lists(struct run *r, bool counted, struct error *e)
+static int make_list(struct run *r, size_t k, bool counted, struct error *e)
 {
-    size_t n = r->plan->n_array;
-    for (size_t d = 0; d < n; d++)
-        for (size_t s = 0; s < n; s++) {
-            uint32_t reach = r->plan->pair[d * n + s];
-            if (!reach)
-                continue;
-            struct cloud dst = cloud_of(r, d, false), src = cloud_of(r, s, true);
-            if (group_list_make(&r->list[d * n + s], &dst, &src, reach == SPH_SYMMETRIC, r->skin,
-                                r->threads, e))
-                return error_prefix(e, "neighbours of \"%s\"", r->plan->array[d].p.name);
-            struct group_list *list = &r->list[d * n + s];
-            uint64_t entries = list->begin[list->n_group];
-            if (counted && entries)
-                list->true_share = (double)group_list_count(list, &dst, &src) / (double)entries;
-        }
+    const struct plan_list *l = &r->plan->list[k];
+    const struct cloud dst = cloud_of(r, l->dst, l->frame, false);
+    const struct cloud src = cloud_of(r, l->src, l->frame, true);
+    struct group_list *list = &r->list[k];
+    if (group_list_make(list, &dst, &src, l->reach == SPH_SYMMETRIC, r->skin, r->manager,
+                        r->threads, e))
+        return error_prefix(e, "neighbours of \"%s\"", r->plan->array[l->dst].p.name);
+    if (counted && list->n_entry)
+        list->true_share =
+            (double)group_list_count(list, &dst, &src, r->threads) / (double)list->n_entry;
+    return 0;
+}
+
+/* All lists anew, but for frozen ones whose particles stand as they stood. */
+static int make_lists(struct run *r, bool sorted, struct error *e)
+{
+    find_range_of_h(r);
+    if (make_ghosts(r, e))
+        return -1;
+    for (size_t k = 0; k < r->plan->n_list; k++) {
+        const bool kept = r->lists_made && !sorted && r->plan->frame[r->plan->list[k].frame].frozen;
+        if (!kept && make_list(r, k, sorted, e))
+            return -1;
+    }
+    for (size_t f = 0; f < r->plan->n_frame; f++)
+        if (keep_places(r, f, e))
+            return -1;
     return 0;
 }
 
 int run_lists(struct run *r, bool within, struct error *e)
 {
-    if (!asks(r->plan)) {
+    if (r->plan->n_list == 0) {
         for (size_t a = 0; !within && a < r->plan->n_array; a++)
             sides_wrap(&r->plan->scene->box, &r->plan->array[a].p);
         return 0;
@@ -211,7 +218,7 @@ int run_lists(struct run *r, bool within, struct error *e)
             }
         }
         if (!status)
-            status = make_ghosts(r, e) || make_lists(r, sort, e) || keep_reference(r, e) ? -1 : 0;
+            status = make_lists(r, sort, e);
         r->lists_made = !status;
         r->cost.list_builds++;
     }
@@ -230,10 +237,17 @@ void run_refresh(struct run *r, size_t array, int column)
     r->cost.neighbour += omp_get_wtime() - begin;
 }
 
-size_t run_list_bytes(const struct run *r)
+struct run_memory run_memory(const struct run *r)
 {
-    size_t bytes = 0;
-    for (size_t k = 0; k < r->plan->n_array * r->plan->n_array; k++)
-        bytes += group_list_bytes(&r->list[k]);
-    return bytes;
+    struct run_memory m = {0};
+    const size_t n = r->plan->n_array;
+    for (size_t k = 0; k < r->plan->n_list; k++) {
+        m.lists += group_list_bytes(&r->list[k]);
+        m.search = r->list[k].search_bytes > m.search ? r->list[k].search_bytes : m.search;
+    }
+    for (size_t k = 0; k < n * r->plan->n_frame; k++)
+        m.reference += skin_bytes(&r->kept[k]);
+    for (size_t a = 0; a < n; a++)
+        m.ghosts += r->ghosts[a].capacity * (sizeof(uint32_t) + sizeof(uint8_t));
+    return m;
 }

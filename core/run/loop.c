@@ -372,7 +372,8 @@ static int parts_make(const struct loop *l, struct summary_parts *q, bool good, 
 static double bytes_per_particle(const struct loop *l)
 {
     const struct plan *plan = l->run.plan;
-    double bytes = (double)run_list_bytes(&l->run), n = (double)particles_total(plan);
+    const struct run_memory m = run_memory(&l->run);
+    double bytes = (double)(m.lists + m.reference + m.ghosts), n = (double)particles_total(plan);
     for (size_t a = 0; a < plan->n_array; a++)
         bytes += (double)(particles_bytes(&plan->array[a].p) * plan->array[a].p.n);
     return n > 0.0 ? bytes / n : 0.0;
@@ -444,7 +445,7 @@ static int loop_begin(struct loop *l, struct plan *plan, struct error *e)
     l->scene_text = cJSON_Print(s->doc->root);
     if (!l->scene_text)
         return error_memory(e, "the scene's text", s->doc->length);
-    if (run_init(&l->run, plan, l->options->threads, l->options->audit, e))
+    if (run_init(&l->run, plan, l->options->threads, l->options->path, l->options->audit, e))
         return -1;
     char *path = output_path(l->out, "log.csv");
     int status = path ? log_open(&l->log, path, plan->dim, e) : error_memory(e, "a path", 1);

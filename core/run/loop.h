@@ -13,6 +13,7 @@ struct loop_options {
     bool table;     /* print the table at the end on stdout */
     bool audit;
     int threads;
+    uint32_t path;            /* SPH_PATH_... */
     const volatile int *stop; /* set by a signal: end after this step */
 };
 

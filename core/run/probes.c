@@ -16,7 +16,9 @@ static double probed(const struct plan_array *a, const char *of, size_t i)
     if (f < 0)
         return NAN;
     const struct column *column = &a->p.column[f];
-    if (column->size != sizeof(double) || column->type == SPH_INT64)
+    if (column->type == SPH_INT64)
+        return (double)((const int64_t *)column->data)[i];
+    if (column->type == SPH_INT32)
         return (double)((const int32_t *)column->data)[i];
     if (of[length] == '.') {
         uint32_t c = (uint32_t)(of[length + 1] - 'x');

@@ -7,7 +7,7 @@
 /* Component c of particle i. */
 static inline double region_value(const struct column *column, uint32_t c, size_t i)
 {
-    return ((const double *)column->data)[c * column->plane + i];
+    return column_get(column, c, i);
 }
 
 /* inside[i]: particle i lies in the region `where`, an expression of x, y, z, r (NULL: everywhere). */

@@ -1,5 +1,7 @@
 /* run/run.c -- makes and frees a run's working memory. */
 #include "run/run.h"
+#include "base/text.h"
+#include "scene/json.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -32,28 +34,85 @@ static void hook_propose(const struct sph_run *hooks, double dt)
     }
 }
 
-int run_init(struct run *r, struct plan *plan, int threads, bool audit, struct error *e)
+/* Columns as they are held from here on (plan/precision.c); until now all were in doubles. */
+static int hold(struct plan *plan, struct error *e)
 {
-    size_t n = plan->n_array;
-    *r = (struct run){.plan = plan, .threads = threads, .skin = plan->scene->neighbours.skin};
+    for (size_t a = 0; a < plan->n_array; a++) {
+        struct plan_array *pa = &plan->array[a];
+        for (size_t c = 0; c < pa->p.n_column; c++)
+            if ((pa->in_floats[c] && particles_hold(&pa->p, (int)c, sizeof(float), e)) ||
+                (pa->mirrored[c] && particles_mirror(&pa->p, (int)c, e)))
+                return -1;
+    }
+    return 0;
+}
+
+static bool changes_h(const struct plan *plan)
+{
+    for (size_t a = 0; a < plan->n_array; a++) {
+        const struct plan_array *pa = &plan->array[a];
+        for (size_t k = 0; k < pa->n_rate; k++)
+            if (pa->rate[k].property == pa->smoothing)
+                return true;
+        for (size_t i = 0; i < plan->n_pass; i++)
+            if (pass_writes(&plan->pass[i], a, pa->smoothing))
+                return true;
+    }
+    return false;
+}
+
+static int find_manager(struct run *r, struct error *e)
+{
+    const struct scene *s = r->plan->scene;
+    const char *name[16];
+    char near[256];
+    size_t n = 0;
+    if (!s->neighbours.manager)
+        return 0;
+    r->manager = neighbour_manager_find(s->neighbours.manager);
+    for (; n < 16 && neighbour_manager_at(n); n++)
+        name[n] = neighbour_manager_at(n)->name;
+    if (r->manager)
+        return 0;
+    return document_fail(s->doc, json_get(s->neighbours.node, "manager"), e,
+                         "there is no neighbour manager \"%s\"%s", s->neighbours.manager,
+                         text_suggest(near, sizeof near, s->neighbours.manager, name, n));
+}
+
+int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool audit,
+             struct error *e)
+{
+    const size_t n = plan->n_array;
+    *r = (struct run){
+        .plan = plan, .threads = threads, .path = path, .skin = plan->scene->neighbours.skin};
     r->time = plan->scene->time.begin;
+    r->h_fixed = !changes_h(plan);
     r->hooks = (struct sph_run){r, hook_reduction, hook_propose};
     r->proposed = INFINITY;
-    r->ghosts = calloc(n, sizeof *r->ghosts);
-    r->list = calloc(n * n, sizeof *r->list);
-    r->reference = calloc(n, sizeof *r->reference);
-    r->reference_n = calloc(n, sizeof *r->reference_n);
-    r->stale = calloc(n, sizeof *r->stale);
+    r->ghosts = calloc(n + 1, sizeof *r->ghosts);
+    r->list = calloc(plan->n_list + 1, sizeof *r->list);
+    r->kept = calloc(n * plan->n_frame + 1, sizeof *r->kept);
+    r->cloud = calloc(n + 1, sizeof *r->cloud);
+    r->stale = calloc(n + 1, sizeof *r->stale);
+    r->mirror_old = calloc(n + 1, sizeof *r->mirror_old);
+    r->h_low = calloc(2 * n + 1, sizeof *r->h_low);
+    r->h_high = r->h_low + n;
     r->reduced = calloc(plan->n_reduction + 1, sizeof *r->reduced);
-    if (!r->ghosts || !r->list || !r->reference || !r->reference_n || !r->stale || !r->reduced)
+    if (!r->ghosts || !r->list || !r->kept || !r->cloud || !r->stale || !r->mirror_old ||
+        !r->h_low || !r->reduced)
         return error_memory(e, "the run", n * n * sizeof *r->list);
     for (size_t i = 0; i < plan->n_reduction; i++)
         r->reduced[i] = NAN;
     for (size_t a = 0; a < n; a++) {
-        r->stale[a] = calloc(plan->array[a].p.n_column, sizeof *r->stale[a]);
-        if (!r->stale[a])
-            return error_memory(e, "the run", plan->array[a].p.n_column);
+        const size_t columns = plan->array[a].p.n_column;
+        r->stale[a] = calloc(columns + 1, sizeof *r->stale[a]);
+        r->mirror_old[a] = malloc((columns + 1) * sizeof *r->mirror_old[a]);
+        if (!r->stale[a] || !r->mirror_old[a])
+            return error_memory(e, "the run", columns);
+        memset(r->mirror_old[a], true, columns);
     }
+    if (hold(plan, e) || find_manager(r, e))
+        return -1;
     return audit ? audit_open(r, e) : 0;
 }
 
@@ -64,18 +123,22 @@ void run_free(struct run *r)
     for (size_t a = 0; a < n; a++) {
         if (r->ghosts)
             ghosts_fini(&r->ghosts[a]);
-        if (r->reference)
-            free(r->reference[a]);
         if (r->stale)
             free(r->stale[a]);
+        if (r->mirror_old)
+            free(r->mirror_old[a]);
     }
-    for (size_t k = 0; r->list && k < n * n; k++)
+    for (size_t k = 0; r->kept && k < n * r->plan->n_frame; k++)
+        skin_fini(&r->kept[k]);
+    for (size_t k = 0; r->list && k < r->plan->n_list; k++)
         group_list_fini(&r->list[k]);
     free(r->ghosts);
     free(r->list);
-    free(r->reference);
-    free(r->reference_n);
+    free(r->kept);
+    free(r->cloud);
     free(r->stale);
+    free(r->mirror_old);
+    free(r->h_low);
     free(r->reduced);
     *r = (struct run){0};
 }

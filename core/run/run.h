@@ -5,7 +5,7 @@
 #define RUN_RUN_H
 
 #include "domain/sides.h"
-#include "neighbours/neighbours.h"
+#include "neighbours/skin.h"
 #include "plan/plan.h"
 #include "registry/extension.h"
 #include <math.h>
@@ -28,15 +28,21 @@ struct run_cost {
 struct run {
     struct plan *plan;
     int threads;
+    uint32_t path; /* how pair loops run: SPH_PATH_... */
     double skin;
-    double time, dt, dt_bound; /* dt_bound: what the reductions allow, before cfl */
+    const struct neighbour_manager *manager; /* NULL: as it suits */
+    double time, dt, dt_bound;               /* dt_bound: what the reductions allow, before cfl */
     uint64_t step;
     /* lists.c */
     struct ghosts *ghosts;   /* [array] */
-    struct group_list *list; /* [dst * n_array + src] */
-    double **reference; /* [array]: dim + 1 planes of positions and h when the lists were made */
-    size_t *reference_n;
-    bool **stale; /* [array][column]: ghosts hold old values */
+    struct group_list *list; /* [plan->n_list] */
+    struct skin *kept; /* [frame * n_array + k]: of the frame's k-th array, when lists were made */
+    struct cloud *cloud;       /* [array]: room for clouds */
+    bool **stale;              /* [array][column]: ghosts hold old values */
+    bool **mirror_old;         /* [array][column]: the mirror does */
+    double centre[3], quantum; /* of positions' mirrors: x = centre + quantum * a whole number */
+    bool h_fixed;              /* no pass and no rate changes any h */
+    double *h_low, *h_high;    /* [array]: range of h when the lists were made, ghosts included */
     bool lists_made,
         lists_suspect; /* suspect: something moved or grew since they were last checked */
     uint64_t builds_since_sort;
@@ -48,7 +54,8 @@ struct run {
     bool look;           /* all that passes write in this step is looked at: finite.c */
 };
 
-int run_init(struct run *r, struct plan *plan, int threads, bool audit, struct error *e);
+int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool audit,
+             struct error *e);
 void run_free(struct run *r);
 
 /* lists.c. At the start of an evaluation: sorts, makes ghosts and lists if they are no longer
@@ -57,7 +64,28 @@ void run_free(struct run *r);
 int run_lists(struct run *r, bool within, struct error *e);
 /* Ghosts of this column get their parents' values, if they hold old ones. */
 void run_refresh(struct run *r, size_t array, int column);
-size_t run_list_bytes(const struct run *r);
+/* A column was written: what copies it is old. */
+static inline void run_changed(struct run *r, size_t array, int column)
+{
+    r->stale[array][column] = r->plan->array[array].p.n_ghost > 0;
+    r->mirror_old[array][column] = true;
+}
+
+/* Bytes held beside the particles' columns. */
+struct run_memory {
+    size_t lists, reference, ghosts, search; /* search: at its peak, while lists are made */
+};
+struct run_memory run_memory(const struct run *r);
+
+/* mirrors.c: a column's copy in 4 bytes is brought up to date, ghosts included; of a column that has
+ * none, nothing is done. Refresh ghosts first. */
+int run_mirror(struct run *r, size_t array, int column, struct error *e);
+/* mirrors.c: the frame of positions' mirrors, for the places that all arrays have now; fails where
+ * floats would not tell particles apart. */
+int run_mirror_frame(struct run *r, struct error *e);
+
+/* reduce.c: a reduction of its column as it is now. */
+double run_reduce(const struct run *r, const struct reduction *d);
 
 /* Two values of one reduction, over different particles. A NaN comes through. */
 static inline double reduction_merge(uint32_t op, double a, double b)

@@ -362,18 +362,29 @@ static int compile_kernel(struct scene *s, const cJSON *node, struct error *e)
 
 static int compile_neighbours(struct scene *s, const cJSON *node, struct error *e)
 {
-    static const char *const keys[] = {"skin"};
+    static const char *const keys[] = {"skin", "manager"};
     s->neighbours.node = node;
     s->neighbours.skin = .1;
     if (!node)
         return 0;
     if (json_keys(s->doc, node, keys, COUNT(keys), e) < 0 ||
-        json_number(s->doc, node, "skin", false, &s->neighbours.skin, e) < 0)
+        json_number(s->doc, node, "skin", false, &s->neighbours.skin, e) < 0 ||
+        json_string(s->doc, node, "manager", false, &s->neighbours.manager, e) < 0)
         return -1;
     if (s->neighbours.skin < 0 || s->neighbours.skin > 1)
         return document_fail(s->doc, json_get(node, "skin"), e,
                              "%.15g is not a skin; give a fraction of the support, 0 to 1",
                              s->neighbours.skin);
+    return 0;
+}
+
+static int compile_precision(struct scene *s, const cJSON *root, struct error *e)
+{
+    static const char *const words[] = {"double", "mixed", "single"};
+    size_t word = COUNT(words);
+    if (scene_word(s, root, "precision", "precision", words, COUNT(words), &word, e) < 0)
+        return -1;
+    s->precision = word < COUNT(words) ? words[word] : NULL;
     return 0;
 }
 
@@ -398,7 +409,7 @@ static int compile(struct scene *s, const cJSON *root, struct error *e)
     static const char *const keys[] = {
         "$schema",   "title",      "dimensions", "plugins", "units",  "domain",
         "materials", "particles",  "boundaries", "scheme",  "kernel", "time",
-        "limits",    "neighbours", "compare",    "probes",  "output"};
+        "limits",    "neighbours", "precision",  "compare", "probes", "output"};
     if (!root->child)
         return document_fail(s->doc, root, e, "the scene is empty");
     if (json_keys(s->doc, root, keys, COUNT(keys), e) < 0 || compile_head(s, root, e) < 0 ||
@@ -411,7 +422,7 @@ static int compile(struct scene *s, const cJSON *root, struct error *e)
         compile_kernel(s, json_get(root, "kernel"), e) < 0 ||
         scene_time(s, json_get(root, "time"), e) < 0 ||
         compile_neighbours(s, json_get(root, "neighbours"), e) < 0 ||
-        scene_compares(s, json_get(root, "compare"), e) < 0 ||
+        compile_precision(s, root, e) < 0 || scene_compares(s, json_get(root, "compare"), e) < 0 ||
         scene_probes(s, json_get(root, "probes"), e) < 0)
         return -1;
     return scene_output(s, json_get(root, "output"), e);

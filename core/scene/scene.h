@@ -149,6 +149,7 @@ struct scene {
         const cJSON *params; /* object: the members that are neither "name" nor "edit" */
         struct scene_edit *edit;
         size_t n_edit;
+        bool fuse; /* default true: functions that can share a sweep do */
     } scheme;
     struct {
         const cJSON *node;
@@ -166,7 +167,9 @@ struct scene {
     struct {
         const cJSON *node;
         double skin;
-    } neighbours; /* optional key "neighbours": {"skin": 0.1} */
+        const char *manager; /* NULL: the plan chooses */
+    } neighbours;            /* optional key "neighbours": {"skin": 0.1, "manager": "octree"} */
+    const char *precision;   /* "double", "mixed", "single"; NULL: the scheme's */
     struct scene_compare *compare;
     size_t n_compare;
     struct scene_probe *probe;

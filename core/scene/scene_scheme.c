@@ -137,10 +137,11 @@ static int compile_edit(struct scene *s, const cJSON *node, struct scene_edit *x
 
 int scene_scheme(struct scene *s, const cJSON *node, struct error *e)
 {
-    static const char *const keys[] = {"name", "edit"};
+    static const char *const keys[] = {"name", "edit", "fuse"};
     const cJSON *item;
     char brief[JSON_BRIEF];
     s->scheme.node = node;
+    s->scheme.fuse = true;
     if (!node)
         return document_fail(s->doc, s->doc->root, e, "the key \"scheme\" is missing");
     if (!cJSON_IsObject(node) && !cJSON_IsString(node))
@@ -154,7 +155,8 @@ int scene_scheme(struct scene *s, const cJSON *node, struct error *e)
         return json_string(s->doc, s->doc->root, "scheme", true, &s->scheme.name, e);
     /* Without a name the recipe is what "edit" puts together. */
     const cJSON *edit = json_get(node, "edit");
-    if (json_string(s->doc, node, "name", edit == NULL, &s->scheme.name, e) < 0)
+    if (json_bool(s->doc, node, "fuse", false, &s->scheme.fuse, e) < 0 ||
+        json_string(s->doc, node, "name", edit == NULL, &s->scheme.name, e) < 0)
         return -1;
     if (!edit)
         return 0;

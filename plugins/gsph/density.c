@@ -29,6 +29,7 @@ static const sph_prop props[] = {
 #define SPH_LOOP_SUM(S, V, MAT) S(rho, RHO) S(slope, SLOPE)
 #define SPH_LOOP_REACH SPH_GATHER
 #define SPH_LOOP_BODY "density.body.h"
+#define SPH_LOOP_F32
 #define SPH_LOOP_DEVICE density_device
 #include <sph/pair-loop.h>
 
@@ -95,4 +96,5 @@ const sph_function gsph_density = {
     .unfinished = "h_busy",
     .reach_scale = 1.0,
     .device = &density_device,
+    .reals = SPH_F64 | SPH_F32,
 };

@@ -1,6 +1,7 @@
 /* gradients.body.h -- one pair of the gradient sweep: moments and differences, weighted with -w'(q) / r. */
-const R weight = -m_j / rho_j * sph_dw(K, r *hinv_i) * rinv;
-sph_add(spread, -m_j *sph_dw(K, r *hinv_i) * r);
+const R slope = -m_j * (sph_dw_q(K, r *hinv_i) * hinv_i);
+const R weight = slope / rho_j;
+sph_add(spread, slope *r2);
 const R drho = rho_i - rho_j, dp = p_i - p_j;
 for (int a = 0; a < DIM; a++) {
     const R wd = weight * dx[a];

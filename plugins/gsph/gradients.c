@@ -36,6 +36,7 @@ static const sph_prop props[] = {
     V_(grho, GRHO) V_(gp, GP) M_(gv, GV) M_(moment, MOMENT) S(spread, SPREAD)
 #define SPH_LOOP_REACH SPH_GATHER
 #define SPH_LOOP_BODY "gradients.body.h"
+#define SPH_LOOP_F32
 #define SPH_LOOP_DEVICE gradients_device
 #include <sph/pair-loop.h>
 
@@ -126,4 +127,5 @@ const sph_function gsph_gradients = {
     .reach = SPH_GATHER,
     .reach_scale = 1.0,
     .device = &gradients_device,
+    .reals = SPH_F64 | SPH_F32,
 };

@@ -1,23 +1,24 @@
 /* rates.body.h -- one pair of the rate sweep: states at the middle of the pair, the Riemann problem between them
  * along the line of centres, the fluxes. Left is j, right is i: e points from j to i. */
-R e[DIM];
 R u_l = sph_num(0.0), u_r = sph_num(0.0);
 R drho_l = sph_num(0.0), drho_r = sph_num(0.0), dp_l = sph_num(0.0), dp_r = sph_num(0.0);
 R du_l = sph_num(0.0), du_r = sph_num(0.0);
-for (int a = 0; a < DIM; a++)
-    e[a] = dx[a] * rinv;
 for (int a = 0; a < DIM; a++) {
-    u_l += v_j[a] * e[a];
-    u_r += v_i[a] * e[a];
+    u_l += v_j[a] * dx[a];
+    u_r += v_i[a] * dx[a];
     drho_l += grho_j[a] * dx[a];
     drho_r += grho_i[a] * dx[a];
     dp_l += gp_j[a] * dx[a];
     dp_r += gp_i[a] * dx[a];
     for (int c = 0; c < DIM; c++) {
-        du_l += gv_j[a * DIM + c] * dx[c] * e[a];
-        du_r += gv_i[a * DIM + c] * dx[c] * e[a];
+        du_l += gv_j[a * DIM + c] * dx[c] * dx[a];
+        du_r += gv_i[a * DIM + c] * dx[c] * dx[a];
     }
 }
+u_l *= rinv;
+u_r *= rinv;
+du_l *= rinv;
+du_r *= rinv;
 const R closing = u_l - u_r; /* > 0: the two approach */
 const R signal = cs_i + cs_j + beta * sph_max(closing, sph_num(0.0));
 
@@ -57,7 +58,7 @@ R p_star = sph_max((z_r * p_l + z_l * p_r + z_l * z_r * (u_l - u_r)) * per_z, sp
  * fixed number of iterations, shocks and rarefactions chosen by select (Toro 2009, eq. 4.5-4.9, 4.37). */
 if (riemann < 0.5) {
     const R c_l = sph_sqrt(c2_l), c_r = sph_sqrt(c2_r);
-    const R least = 1e-12 * (p_l + p_r) + 1e-300;
+    const R least = sph_num(1e-12) * (p_l + p_r) + sph_num(1e-300);
     const R A_l = 2.0 / ((gamma_l + 1.0) * rho_l), B_l = (gamma_l - 1.0) / (gamma_l + 1.0) * p_l;
     const R A_r = 2.0 / ((gamma_r + 1.0) * rho_r), B_r = (gamma_r - 1.0) / (gamma_r + 1.0) * p_r;
     const R n_l = 0.5 * (gamma_l - 1.0) / gamma_l, n_r = 0.5 * (gamma_r - 1.0) / gamma_r;
@@ -89,11 +90,11 @@ if (riemann < 0.5) {
     u_star = 0.5 * (u_l + u_r + f_r - f_l);
 }
 
-/* The force of the pair: geometric mean of the volumes, corrected. */
-const R dw_i = sph_dw(K, r *hinv_i) * sph_ipow(hinv_i, DIM + 1);
-const R dw_j = sph_dw(K, r *hinv_j) * sph_ipow(hinv_j, DIM + 1);
-const R flux = -m_j * p_star * (volume_i * dw_i + volume_j * dw_j) / (rho_i * rho_j);
+/* The force of the pair, along dx: geometric mean of the volumes, corrected. */
+const R dw_i = sph_dw_q(K, r *hinv_i) * sph_ipow(hinv_i, DIM + 2);
+const R dw_j = sph_dw_q(K, r *hinv_j) * sph_ipow(hinv_j, DIM + 2);
+const R flux = m_j * p_star * (volume_i * dw_i + volume_j * dw_j) / (rho_i * rho_j);
 for (int a = 0; a < DIM; a++)
-    sph_add(force[a], flux *e[a]);
-sph_add(power, flux *u_star);
+    sph_sub(force[a], flux *dx[a]);
+sph_sub(power, flux *u_star * r);
 sph_take_max(fastest, signal);

@@ -52,6 +52,9 @@ static const sph_prop props[] = {
 #define SPH_LOOP_PARAM(P_) P_(riemann, RIEMANN) P_(limiter, LIMITER) P_(beta, BETA)
 #define SPH_LOOP_REACH SPH_SYMMETRIC
 #define SPH_LOOP_BODY "rates.body.h"
+#define SPH_LOOP_F32
+/* The kernel is a small part of this body. */
+#define SPH_LOOP_ANY_KERNEL
 #define SPH_LOOP_DEVICE rates_device
 #define SPH_LOOP_PRELUDE "rates.macros.h"
 #include <sph/pair-loop.h>
@@ -111,6 +114,7 @@ const sph_function gsph_rates = {
     .reach = SPH_SYMMETRIC,
     .reach_scale = 1.0,
     .device = &rates_device,
+    .reals = SPH_F64 | SPH_F32,
     .rates = SPH_LIST(rates),
     .reductions = SPH_LIST(reductions),
 };

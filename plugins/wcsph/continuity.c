@@ -17,7 +17,8 @@ static const sph_prop props[] = {
 #define SPH_LOOP_SUM(S, V_, M_) S(drho, DRHO)
 #define SPH_LOOP_BODY "continuity.body.h"
 #define SPH_LOOP_F32
-#define SPH_LOOP_UNIFORM_H
+/* Runs seldom: rates.c stands in for it. */
+#define SPH_LOOP_ANY_KERNEL
 #define SPH_LOOP_DEVICE wcsph_continuity_device
 #include <sph/pair-loop.h>
 

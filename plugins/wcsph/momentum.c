@@ -9,14 +9,10 @@ enum { ALPHA, BETA, GRAVITY };
 static const sph_param params[] = {WCSPH_VISCOSITY, WCSPH_GRAVITY};
 
 static const sph_prop props[] = {
-    WCSPH_M,
-    WCSPH_V,
-    WCSPH_RHO,
-    WCSPH_P,
-    WCSPH_CS,
-    SPH_PROP("drho", "kg/m^d/s", "rate of the density", SPH_SCALAR, SPH_DST_READ, 0.0),
-    WCSPH_A,
-    WCSPH_DT,
+    WCSPH_M,   WCSPH_V,
+    WCSPH_RHO, WCSPH_P,
+    WCSPH_CS,  SPH_PROP("drho", "kg/m^d/s", "rate of the density", SPH_SCALAR, SPH_DST_READ, 0.0),
+    WCSPH_A,   WCSPH_DT,
 };
 
 #define SPH_LOOP sweep
@@ -26,7 +22,8 @@ static const sph_prop props[] = {
 #define SPH_LOOP_PARAM(P_) P_(alpha, ALPHA) P_(beta, BETA)
 #define SPH_LOOP_BODY "momentum.body.h"
 #define SPH_LOOP_F32
-#define SPH_LOOP_UNIFORM_H
+/* Runs seldom: rates.c stands in for it. */
+#define SPH_LOOP_ANY_KERNEL
 #define SPH_LOOP_DEVICE wcsph_momentum_device
 #include <sph/pair-loop.h>
 

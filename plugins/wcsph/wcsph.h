@@ -30,10 +30,8 @@ sph_status wcsph_finish(const sph_batch *b, const struct wcsph_finish *at);
 #define WCSPH_RHO SPH_PROP("rho", "kg/m^d", "density", SPH_SCALAR, WCSPH_READ, NAN)
 #define WCSPH_P SPH_PROP("p", "J/m^d", "pressure", SPH_SCALAR, WCSPH_READ, NAN)
 #define WCSPH_CS SPH_PROP("cs", "m/s", "speed of sound", SPH_SCALAR, WCSPH_READ, NAN)
-#define WCSPH_DRHO                                                                                 \
-    SPH_PROP("drho", "kg/m^d/s", "rate of the density", SPH_SCALAR, SPH_DST_SUM, 0.0)
-#define WCSPH_A                                                                                    \
-    SPH_PROP("a", "m/s^2", "acceleration", SPH_VECTOR, SPH_DST_SUM | SPH_DST_READ, 0.0)
+#define WCSPH_DRHO SPH_PROP("drho", "kg/m^d/s", "rate of the density", SPH_SCALAR, SPH_DST_SUM, 0.0)
+#define WCSPH_A SPH_PROP("a", "m/s^2", "acceleration", SPH_VECTOR, SPH_DST_SUM | SPH_DST_READ, 0.0)
 #define WCSPH_DT                                                                                   \
     SPH_PROP("dt", "s", "time step that the particle allows, before cfl", SPH_SCALAR,              \
              SPH_DST_WRITE, 0.0)

@@ -82,7 +82,12 @@ typedef struct sph_function {
     /* Pair: what reals `run` takes, SPH_F64 | SPH_F32; 0: SPH_F64. `prepare`, `before`, `after` and
      * point functions get doubles in any case. */
     uint32_t reals;
-    uint32_t reserved;
+    uint32_t frozen; /* pair, with `over`: 1: the neighbours are found once and stay, whatever moves,
+                      * until particles are made or removed */
+    /* Pair: a declared vector property, read of destinations and sources, that stands in place of the
+     * position: neighbours, dx and r are in it, such as in a solid's reference configuration. In
+     * domains without periodic and mirror sides, in doubles. NULL: the position. */
+    const char *over;
 } sph_function;
 
 SPH_END_DECLS

@@ -235,8 +235,8 @@ SPH_INLINE R SPH_OF_ISA(sph_sub_where_)(M m, R sum, R a)
 #include <sph/lanes-math.h>
 #include <sph/lanes-rsqrt.h>
 
-/* The masked lanes of a, and what gives 1 in the others. */
-SPH_INLINE R SPH_OF_ISA(sph_pow_where_)(B m, R a, R b)
+/* a^b in the masked lanes, 1 in the others. A call, not inline: it is long. */
+static __attribute__((noinline, unused)) R SPH_OF_ISA(sph_pow_where_)(B m, R a, R b)
 {
     const R one = sph_num(1.0);
     return sph_select(m, sph_pow(sph_select(m, a, one), b), one);

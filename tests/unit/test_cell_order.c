@@ -35,7 +35,7 @@ static void orders_by_cells(void **state)
         for (size_t i = 0; i < n; i++) {
             o.x[0][i] -= 0.5; /* cells count from a multiple of the edge, not from zero */
         }
-        assert_int_equal(cell_order(&o.c, NULL, cell, order, &e), 0);
+        assert_int_equal(cell_order(&o.c, NULL, cell, 1, order, &e), 0);
         check_permutation(order, n);
         for (size_t i = 0; i + 1 < n; i++) {
             double key[2] = {0, 0};
@@ -74,7 +74,7 @@ static void order_follows_the_id(void **state)
     for (int round = 0; round < 3; round++) {
         uint64_t seed = (uint64_t)round;
 
-        assert_int_equal(cell_order(&o.c, id, 0.05, order, &e), 0);
+        assert_int_equal(cell_order(&o.c, id, 0.05, 1, order, &e), 0);
         check_permutation(order, n);
         for (size_t i = 0; i < n; i++) {
             if (round == 0) {
@@ -123,12 +123,38 @@ static void orders_anything(void **state)
             }
         }
         for (size_t k = 0; k < sizeof edge / sizeof edge[0]; k++) {
-            assert_int_equal(cell_order(&o.c, NULL, edge[k], order, &e), 0);
+            assert_int_equal(cell_order(&o.c, NULL, edge[k], 1, order, &e), 0);
             check_permutation(order, o.c.n);
         }
         o.c.n = 0;
-        assert_int_equal(cell_order(&o.c, NULL, 1, order, &e), 0);
+        assert_int_equal(cell_order(&o.c, NULL, 1, 1, order, &e), 0);
         free(order);
+        cloud_free(&o);
+    }
+}
+
+/* Many points, in cells of many widths, in a cloud in which some cells are crowded. */
+static void threads_make_no_difference(void **state)
+{
+    static const double edge[] = {0.001, 0.03, 0.2, 3, 0};
+    struct error e;
+
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++) {
+        struct owned o = cloud_clustered(dim, 20011, 30, 2);
+        size_t bytes = o.c.n * sizeof(uint32_t);
+        uint32_t *one = malloc(bytes), *more = malloc(bytes);
+
+        for (size_t k = 0; k < sizeof edge / sizeof edge[0]; k++) {
+            assert_int_equal(cell_order(&o.c, NULL, edge[k], 1, one, &e), 0);
+            check_permutation(one, o.c.n);
+            for (int threads = 2; threads < 6; threads++) {
+                assert_int_equal(cell_order(&o.c, NULL, edge[k], threads, more, &e), 0);
+                assert_memory_equal(one, more, bytes);
+            }
+        }
+        free(one);
+        free(more);
         cloud_free(&o);
     }
 }
@@ -139,6 +165,7 @@ int main(void)
         cmocka_unit_test(orders_by_cells),
         cmocka_unit_test(order_follows_the_id),
         cmocka_unit_test(orders_anything),
+        cmocka_unit_test(threads_make_no_difference),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -528,7 +528,7 @@ static void refuses(void **state)
         assert_non_null(strstr(e.text, "source particle 37"));
         assert_int_equal(group_list_make(&l, &o.c, &good.c, true, 0.1, NULL, 1, &e), -1);
         assert_non_null(strstr(e.text, "destination particle 37"));
-        assert_int_equal(cell_order(&o.c, NULL, 0.1, order, &e), -1);
+        assert_int_equal(cell_order(&o.c, NULL, 0.1, 1, order, &e), -1);
         assert_non_null(strstr(e.text, "particle 37"));
         o.x[1][37] = old;
         old = o.h[99];

@@ -6,6 +6,7 @@
 #include <cmocka.h>
 
 #include "domain/sides.h"
+#include "neighbours/neighbours.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -333,6 +334,36 @@ static void refreshes(void **state)
     ghosts_fini(&g);
 }
 
+/* Ghosts stand in cell order, so that lists of them are short and the same however they came. */
+static void ghosts_are_in_order(void **state)
+{
+    struct error e;
+
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++) {
+        struct box box = make_box(dim, SIDE_PERIODIC, SIDE_PERIODIC);
+        struct particles p = make(dim, 500, &box, 5);
+        struct ghosts g = {0};
+        struct cloud cloud = {.dim = dim};
+        uint32_t *order;
+
+        assert_int_equal(ghosts_make(&g, &box, &p, 0.3, &e), 0);
+        assert_true(g.n > 20);
+        order = malloc(g.n * sizeof *order);
+        cloud.n = g.n;
+        for (int a = 0; a < dim; a++) {
+            cloud.x[a] = particles_real(&p, "x", (uint32_t)a) + p.n;
+        }
+        assert_int_equal(cell_order(&cloud, NULL, 0.3, 1, order, &e), 0);
+        for (size_t k = 0; k < g.n; k++) {
+            assert_int_equal(order[k], k);
+        }
+        free(order);
+        particles_fini(&p);
+        ghosts_fini(&g);
+    }
+}
+
 static void needs_positions(void **state)
 {
     struct box box = make_box(1, SIDE_PERIODIC, SIDE_PERIODIC);
@@ -365,6 +396,7 @@ int main(void)
         cmocka_unit_test(open_or_unbounded_makes_none),
         cmocka_unit_test(refuses_thin_boxes),
         cmocka_unit_test(refreshes),
+        cmocka_unit_test(ghosts_are_in_order),
         cmocka_unit_test(needs_positions),
     };
 

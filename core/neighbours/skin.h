@@ -1,0 +1,43 @@
+/* neighbours/skin.h -- whether neighbour lists are still right: where particles were when the lists
+ * were made, kept compactly, against where they are.
+ *
+ * Positions are kept in 16 bits an axis within the box of 32 particles, h in 16 bits with 11 digits:
+ * some 10 bytes a particle in 3D. What rounding can have hidden is added to the displacement and
+ * taken off h, so the answer errs on the safe side: by less than 0.001 of the reach, 1 % of a
+ * skin of 0.1. Blocks that are too wide for that (with a particle that has flown away) or whose h
+ * differ too much are kept as they are. */
+#ifndef NEIGHBOURS_SKIN_H
+#define NEIGHBOURS_SKIN_H
+
+#include "neighbours/neighbours.h"
+
+struct skin_block;
+
+struct skin {
+    int dim;
+    size_t n, n_block, n_exact;
+    struct skin_block *block;
+    uint16_t *code; /* [n_block][dim + 1][32]: positions and h */
+    double *exact;  /* [n_exact][dim + 1][32] */
+    size_t block_capacity, exact_capacity;
+};
+
+/* What has happened since, in units of length. NAN once a number is none. */
+struct skin_change {
+    double moved; /* no particle has moved further */
+    double room;  /* the least of (1 + skin) * reach then - reach now */
+};
+
+/* Begin with zeros; keeping again uses the memory again. */
+int skin_keep(struct skin *s, const struct cloud *c, int threads, struct error *e);
+struct skin_change skin_change(const struct skin *s, const struct cloud *c, double relative,
+                               int threads);
+/* Whether lists with this relative skin over n clouds, each kept in one of s, still hold all pairs:
+ * 2 * moved <= room over all particles of all clouds. False if a number is none, or the number of
+ * particles has changed. */
+bool skin_holds(const struct skin *s, const struct cloud *c, size_t n, double relative,
+                int threads);
+void skin_fini(struct skin *s);
+size_t skin_bytes(const struct skin *s);
+
+#endif

@@ -1,0 +1,129 @@
+/* plan/precision.c -- which sweeps work in floats, and how each column is held. A sweep in floats needs all
+ * its columns in floats; what an integrator advances stays in doubles beside that (but in a run of single
+ * precision), and so does what a function without floats sums or the core itself works on. */
+#include "plan/inside.h"
+#include <stdlib.h>
+#include <string.h>
+
+const char *const precision_name[3] = {"double", "mixed", "single"};
+
+static bool takes_floats(const struct pass *p)
+{
+    return p->shape == SPH_PAIR && p->frame == 0 && p->function &&
+           (p->function->reals & SPH_F32) != 0;
+}
+
+/* What a pair pass touches, in either role. */
+static void mark(struct plan *plan, const struct pass *p, bool **touched)
+{
+    for (uint32_t k = 0; k < p->use.item->props.count; k++) {
+        if (p->dst.column[k] >= 0)
+            touched[p->dst.array][p->dst.column[k]] = true;
+        for (size_t s = 0; s < p->n_src; s++)
+            if (p->src[s].column[k] >= 0)
+                touched[p->src[s].array][p->src[s].column[k]] = true;
+    }
+    (void)plan;
+}
+
+static void mark_geometry(const struct plan *plan, const struct pass *p, bool **touched)
+{
+    const struct plan_array *dst = &plan->array[p->dst.array];
+    touched[p->dst.array][dst->position] = touched[p->dst.array][dst->smoothing] = true;
+    for (size_t s = 0; s < p->n_src; s++) {
+        const struct plan_array *src = &plan->array[p->src[s].array];
+        touched[p->src[s].array][src->position] = touched[p->src[s].array][src->smoothing] = true;
+    }
+}
+
+/* Columns whose doubles somebody needs: sums in doubles, particles that are born, the core. */
+static void keep_doubles(struct plan *plan, bool **doubles)
+{
+    for (size_t i = 0; i < plan->n_pass; i++) {
+        const struct pass *p = &plan->pass[i];
+        const sph_population *d = p->use.entry ? p->use.entry->population : NULL;
+        if (p->shape == SPH_PAIR && p->real == SPH_F64)
+            mark(plan, p, doubles);
+        for (uint32_t k = 0; d && k < d->born_props.count; k++) {
+            const sph_prop *prop = list_at(&d->born_props, k);
+            doubles[p->dst.array][particles_find(&plan->array[p->dst.array].p, prop->name)] = true;
+        }
+    }
+    for (size_t a = 0; a < plan->n_array; a++) {
+        const struct plan_array *pa = &plan->array[a];
+        doubles[a][pa->position] = doubles[a][pa->smoothing] = true;
+        for (size_t k = 0; plan->precision != PRECISION_SINGLE && k < pa->n_rate; k++)
+            doubles[a][pa->rate[k].property] = true;
+    }
+}
+
+static void decide(struct plan_array *a, const bool *floats, const bool *doubles)
+{
+    for (size_t c = 0; c < a->p.n_column; c++) {
+        if (!floats[c] || !column_is_real(&a->p.column[c]))
+            continue;
+        a->mirrored[c] = doubles[c];
+        a->in_floats[c] = !doubles[c];
+    }
+    /* What the integrator keeps of a rate is as exact as the rate; of a state, as the state. */
+    for (size_t c = 0; c < a->p.n_column; c++) {
+        const char *name = a->p.column[c].name;
+        for (size_t k = 0; k < a->p.n_column; k++) {
+            const char *of = a->p.column[k].name;
+            const size_t n = strlen(of);
+            if (strncmp(name, of, n) == 0 && strcmp(name + n, ".0") == 0)
+                a->in_floats[c] = a->in_floats[k];
+        }
+    }
+}
+
+int precision_finish(struct plan *plan, struct error *e)
+{
+    const char *wanted = plan->scene->precision;
+    const size_t n = plan->n_array;
+    bool **floats = calloc(2 * n + 1, sizeof *floats), **doubles = floats ? floats + n : NULL;
+    int status = floats ? 0 : error_memory(e, "the plan", n * sizeof *floats);
+    plan->precision =
+        plan->scheme && plan->scheme->reals == SPH_F32 ? PRECISION_MIXED : PRECISION_DOUBLE;
+    for (int k = 0; wanted && k < 3; k++)
+        if (strcmp(wanted, precision_name[k]) == 0)
+            plan->precision = (enum precision)k;
+    for (size_t a = 0; !status && a < n; a++) {
+        struct plan_array *pa = &plan->array[a];
+        floats[a] = calloc(pa->p.n_column + 1, sizeof **floats);
+        doubles[a] = calloc(pa->p.n_column + 1, sizeof **doubles);
+        pa->in_floats = calloc(pa->p.n_column + 1, sizeof *pa->in_floats);
+        pa->mirrored = calloc(pa->p.n_column + 1, sizeof *pa->mirrored);
+        if (!floats[a] || !doubles[a] || !pa->in_floats || !pa->mirrored)
+            status = error_memory(e, "the plan", pa->p.n_column);
+    }
+    for (size_t i = 0; !status && i < plan->n_pass; i++) {
+        struct pass *p = &plan->pass[i];
+        p->real = plan->precision != PRECISION_DOUBLE && takes_floats(p) ? SPH_F32 : SPH_F64;
+        if (p->real == SPH_F64)
+            continue;
+        mark(plan, p, floats);
+        mark_geometry(plan, p, floats);
+    }
+    if (!status)
+        keep_doubles(plan, doubles);
+    for (size_t a = 0; a < n && floats; a++) {
+        if (!status)
+            decide(&plan->array[a], floats[a], doubles[a]);
+        free(floats[a]);
+        free(doubles[a]);
+    }
+    free(floats);
+    return status;
+}
+
+size_t plan_bytes(const struct plan *plan, size_t array)
+{
+    const struct plan_array *a = &plan->array[array];
+    size_t bytes = 0;
+    for (size_t c = 0; c < a->p.n_column; c++) {
+        const struct column *column = &a->p.column[c];
+        bytes += column->ncomp * (a->in_floats[c] ? 4 : column->size + (a->mirrored[c] ? 4 : 0));
+    }
+    return bytes;
+}

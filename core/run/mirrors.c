@@ -1,0 +1,77 @@
+/* run/mirrors.c -- columns' copies in 4 bytes, for sweeps in floats: a state column's as floats; the
+ * position's as whole numbers of a quantum, whose differences are exact wherever in the domain they are
+ * taken. Made when a sweep reads them and their column has changed. */
+#include "run/run.h"
+#include <math.h>
+#include <omp.h>
+
+/* A quantum may be so much of the smallest smoothing length at most. */
+#define COARSEST 1e-5
+
+int run_mirror(struct run *r, size_t array, int column, struct error *e)
+{
+    const struct plan_array *a = &r->plan->array[array];
+    const struct column *c = &a->p.column[column];
+    const long end = (long)(a->p.n + a->p.n_ghost);
+    if (!c->mirror || !r->mirror_old[array][column])
+        return 0;
+    int bad = 0;
+    for (uint32_t k = 0; k < c->ncomp; k++) {
+        const double *from = (const double *)c->data + k * c->plane;
+        if (column == a->position) {
+            int32_t *to = (int32_t *)c->mirror + k * c->plane;
+            const double inverse = 1.0 / r->quantum, centre = r->centre[k];
+#pragma omp parallel for num_threads(r->threads) reduction(| : bad) if (end > 50000)
+            for (long i = 0; i < end; i++) {
+                const double q = (from[i] - centre) * inverse;
+                bad |= !(fabs(q) < 1073741824.0); /* a difference of two has room */
+                to[i] = (int32_t)(q + copysign(0.5, q));
+            }
+        } else {
+            float *to = (float *)c->mirror + k * c->plane;
+#pragma omp parallel for num_threads(r->threads) if (end > 50000)
+            for (long i = 0; i < end; i++)
+                to[i] = (float)from[i];
+        }
+    }
+    if (bad)
+        return error_set(e, EXIT_RUN, "a particle of array \"%s\" is nowhere, or left the domain",
+                         a->p.name);
+    r->mirror_old[array][column] = false;
+    return 0;
+}
+
+int run_mirror_frame(struct run *r, struct error *e)
+{
+    const struct plan *plan = r->plan;
+    double longest = 0.0, h = INFINITY, h_high = 0.0;
+    for (size_t a = 0; a < plan->n_array; a++) {
+        h = fmin(h, r->h_low[a]);
+        h_high = fmax(h_high, r->h_high[a]);
+    }
+    for (int c = 0; c < plan->dim; c++) {
+        double low = INFINITY, high = -INFINITY;
+        for (size_t a = 0; a < plan->n_array; a++) {
+            const struct plan_array *pa = &plan->array[a];
+            const struct column *x = &pa->p.column[pa->position];
+            const double *at = (const double *)x->data + (size_t)c * x->plane;
+            for (size_t i = 0; i < pa->p.n + pa->p.n_ghost; i++) {
+                low = at[i] < low ? at[i] : low;
+                high = at[i] > high ? at[i] : high;
+            }
+        }
+        r->centre[c] = low <= high ? low + 0.5 * (high - low) : 0.0;
+        longest = low <= high ? fmax(longest, high - low) : longest;
+    }
+    /* Room to move in until the lists are made anew, and for what lies beyond the domain then. */
+    longest = 1.05 * longest + 4.0 * plan->kernel.support * plan->reach_scale * h_high;
+    r->quantum = longest > 0.0 ? longest / 2147483648.0 : 1.0;
+    for (size_t a = 0; a < plan->n_array; a++)
+        r->mirror_old[a][plan->array[a].position] = true;
+    if (plan->precision != PRECISION_DOUBLE && h > 0.0 && r->quantum > COARSEST * h)
+        return error_set(e, EXIT_RUN,
+                         "precision \"%s\" cannot tell neighbours apart: the domain is %.3g times "
+                         "the smallest smoothing length wide; take \"double\"",
+                         precision_name[plan->precision], longest / h);
+    return 0;
+}

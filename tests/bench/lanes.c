@@ -1,7 +1,7 @@
 /* lanes.c -- what exp, log, pow and the reciprocal root cost on lanes, per instruction set and
  * precision, beside libm lane by lane. Prints ns per value (throughput: the least of many rounds
  * over arrays that stay in the first cache). Not a test. */
-#include "lanes_sets.h"
+#include "../unit/lanes_sets.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -276,10 +276,26 @@ static const sph_item swing_item = {SIZE(sph_item), SPH_ALL_DIMS, "swing", "a mo
                                     SPH_NO_LIST,    SPH_NO_LIST};
 static const sph_item coast_item = {SIZE(sph_item), SPH_ALL_DIMS, "coast", "a mock", "",
                                     SPH_NO_LIST,    SPH_NO_LIST};
-static const sph_scheme swing = {
-    SIZE(sph_scheme), 0, &swing_item, "thing", "kdk", 0.25, SPH_LIST(swing_steps), SPH_LIST(rates)};
-static const sph_scheme coast = {
-    SIZE(sph_scheme), 0, &coast_item, "thing", "kdk", 0.25, SPH_LIST(coast_steps), SPH_LIST(rates)};
+static const sph_scheme swing = {SIZE(sph_scheme),
+                                 0,
+                                 &swing_item,
+                                 "thing",
+                                 "kdk",
+                                 0.25,
+                                 SPH_LIST(swing_steps),
+                                 SPH_LIST(rates),
+                                 0,
+                                 0};
+static const sph_scheme coast = {SIZE(sph_scheme),
+                                 0,
+                                 &coast_item,
+                                 "thing",
+                                 "kdk",
+                                 0.25,
+                                 SPH_LIST(coast_steps),
+                                 SPH_LIST(rates),
+                                 0,
+                                 0};
 
 const struct rig_items motion_items = {
     {&spring, &pull, &bound, &measure, &count_up, &breathe, &shade, &gather, &wide, &widen, NULL},

@@ -308,7 +308,7 @@ static int reset(void **state)
 static void begin(struct run *run, struct rig *rig)
 {
     struct error e = {0};
-    if (run_init(run, &rig->plan, 2, false, &e) || run_passes(run, MOMENT_START, &e) ||
+    if (run_init(run, &rig->plan, 2, SPH_PATH_BEST, false, &e) || run_passes(run, MOMENT_START, &e) ||
         run_passes(run, MOMENT_EVALUATE, &e))
         fail_msg("%s", e.text);
 }
@@ -372,7 +372,7 @@ static void reductions(void **state)
 
     (void)state;
     rig_open(&rig, &items, SCENE("{'name':'move','path':{'t':[0,2],'v':[1,3]},'speed':0.25}", ""));
-    assert_int_equal(run_init(&run, &rig.plan, 2, false, &e), 0);
+    assert_int_equal(run_init(&run, &rig.plan, 2, SPH_PATH_BEST, false, &e), 0);
     assert_int_equal(run_passes(&run, MOMENT_EVALUATE, &e), 0);
     assert_int_equal(prepared, 2); /* once an array */
     assert_true(isfinite(run.proposed) && run.proposed == 0.25);

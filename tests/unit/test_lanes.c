@@ -409,7 +409,7 @@ struct device {
     cl_mem in, in2, out;
 };
 
-/* N values of the function; `build`: its kernel. */
+/* N values of the function. */
 static void run_kernel(const struct device *d, cl_kernel kernel, int function, int width)
 {
     const size_t size = (size_t)N * (t.f32 ? sizeof(float) : sizeof(double));

@@ -26,7 +26,7 @@ struct motion {
 static void begin(struct motion *m, int threads)
 {
     struct error e = {0};
-    if (run_init(&m->run, &m->rig.plan, threads, false, &e))
+    if (run_init(&m->run, &m->rig.plan, threads, SPH_PATH_BEST, false, &e))
         fail_msg("%s", e.text);
 }
 
@@ -321,7 +321,7 @@ static void test_several_sources(void **state)
         steps(&m, 0.004, 1);
     }
     assert_true(m.run.cost.list_builds > 3);
-    assert_int_equal(m.rig.plan.pair[2], SPH_GATHER); /* two from one: only gather asks */
+    assert_int_equal(plan_pair(&m.rig.plan, 1, 0)->reach, SPH_GATHER); /* two from one: only gather asks */
     end(&m);
 }
 

@@ -31,10 +31,10 @@ void ghosts_fini(struct ghosts *g);
  * moved. */
 size_t sides_wrap(const struct box *box, struct particles *p);
 
-/* Makes ghosts of every real particle that is nearer than `margin` to a side behind which its image
- * stands: the largest support of any particle of any array, skin included, so that a pair within
- * reach of either is seen. Wrap first. Appends to p (resizes), in cell order (neighbours.h) of cells
- * as wide as the margin, and fills x and h.
+/* Makes ghosts of every real particle that is nearer than `margin` to a side behind which its
+ * image stands: the largest support of any particle of any array, skin included, so that a pair
+ * within reach of either is seen. Wrap first. Appends to p (resizes), in cell order (neighbours.h)
+ * of cells as wide as the margin, and fills x and h.
  *
  * There is one layer of images, so a domain between two periodic or two mirror sides must be as
  * wide as the margin: else fails, "... use a larger box". Between one and two margins a particle

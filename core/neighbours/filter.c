@@ -189,5 +189,7 @@ const struct filter *filter_plain(void)
 
 const struct filter *filter_best(void)
 {
-    return filter_avx2() ? filter_avx2() : &plain;
+    const struct filter *wide = filter_avx512() ? filter_avx512() : filter_avx2();
+
+    return wide ? wide : &plain;
 }

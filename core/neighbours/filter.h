@@ -1,6 +1,7 @@
-/* neighbours/filter.h -- the inner loops of the neighbour search: which boxes are near a query, and which sources are within reach of any destination of a group. Plain C, and
- * the same with AVX2 and FMA where the processor has them; both keep what is within reach, and
- * may differ on what lies within SLACK beyond it. */
+/* neighbours/filter.h -- the inner loops of the neighbour search: which boxes are near a query,
+ * and which sources are within reach of any destination of a group. Plain C, and the same with
+ * AVX2 and FMA where the processor has them; both keep what is within reach, and may differ on
+ * what lies within SLACK beyond it. */
 #ifndef NEIGHBOURS_FILTER_H
 #define NEIGHBOURS_FILTER_H
 
@@ -53,7 +54,7 @@ struct filter {
     size_t (*near_leaves)(const struct packed_box8 *boxes, size_t n, const struct lanes *t, int dim,
                           uint32_t *out);
     /* Writes the index 8 leaf[k] + i of every source of those leaves that a lane sees; their
-     * count. Room for 8 (n + 1). */
+     * count. Room for 8 n + STEPS_MORE. */
     size_t (*near_points)(const struct packed_leaf *pack, const uint32_t *leaf,
                           const uint32_t *chosen, size_t n, const struct lanes *t, int dim,
                           uint32_t *out);
@@ -66,10 +67,16 @@ struct filter {
 /* Points further away than so many units are taken to be there: squares must stay numbers. */
 #define FILTER_FAR 1e18
 
-/* The filter for this processor; the plain one for the tests; with AVX2, NULL where there is none. */
+/* The filter for this processor; the plain one; those for AVX2 and AVX-512, NULL where there is
+ * none. */
 const struct filter *filter_best(void);
 const struct filter *filter_plain(void);
 const struct filter *filter_avx2(void);
+const struct filter *filter_avx512(void);
+/* near_points for AVX-512; on x86-64 alone. */
+size_t filter_near_points_avx512(const struct packed_leaf *pack, const uint32_t *leaf,
+                                 const uint32_t *chosen, size_t n, const struct lanes *t, int dim,
+                                 uint32_t *out);
 
 /* Eight values of a column from `first` on, those beyond `last` as the one before it. */
 static inline const double *filter_eight(const double *x, size_t first, size_t last, double *room)

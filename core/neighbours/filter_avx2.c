@@ -368,6 +368,17 @@ AVX2 static void avx2_steps(uint16_t *out, const uint32_t *found, size_t n, uint
 static const struct filter avx2 = {avx2_near_boxes,  avx2_pack,        avx2_lanes,
                                    avx2_near_leaves, avx2_near_points, avx2_steps};
 
+static const struct filter avx512 = {
+    avx2_near_boxes,           avx2_pack, avx2_lanes, avx2_near_leaves,
+    filter_near_points_avx512, avx2_steps};
+
+const struct filter *filter_avx512(void)
+{
+    return filter_avx2() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq")
+               ? &avx512
+               : NULL;
+}
+
 const struct filter *filter_avx2(void)
 {
     return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? &avx2 : NULL;
@@ -376,6 +387,11 @@ const struct filter *filter_avx2(void)
 #else
 
 const struct filter *filter_avx2(void)
+{
+    return NULL;
+}
+
+const struct filter *filter_avx512(void)
 {
     return NULL;
 }

@@ -1,4 +1,5 @@
-/* neighbours/grid.h -- cells of equal edge over a box, their number bounded by that of the points. */
+/* neighbours/grid.h -- cells of equal edge over a box, their number bounded by that of the
+ * points. */
 #ifndef NEIGHBOURS_GRID_H
 #define NEIGHBOURS_GRID_H
 

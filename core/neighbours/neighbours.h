@@ -64,8 +64,8 @@ const struct neighbour_manager *neighbour_manager_at(size_t k);
 /* NULL if none has this name. */
 const struct neighbour_manager *neighbour_manager_find(const char *name);
 /* The one taken where none is asked for: "boxes", which was the fastest of all for even particles
- * and for reaches that range over a factor of 100 (make bench prints both). "octree" looks at a fifth
- * fewer sources in the latter, but must put all in an order of its own first. */
+ * and for reaches that range over a factor of 100 (make bench prints both). "octree" looks at a
+ * fifth fewer sources in the latter, but must put all in an order of its own first. */
 const struct neighbour_manager *neighbour_manager_default(void);
 
 /* Lists for destinations dst over sources src (which may be the same arrays, self pairs
@@ -88,8 +88,8 @@ static inline uint64_t group_list_entries(const struct group_list *list, size_t 
            (a < list->n_span ? list->span[a].first : list->n_entry);
 }
 
-/* Goes through a group's sources:
- * for (struct source_walk w = source_walk_begin(list, g); source_walk_next(list, &w);) ... w.source */
+/* Goes through a group's sources: for (struct source_walk w = source_walk_begin(list, g);
+ * source_walk_next(list, &w);) ... w.source */
 struct source_walk {
     uint64_t span, end;
     uint32_t k, source;
@@ -125,8 +125,8 @@ size_t group_list_bytes(const struct group_list *list);
  * taken. */
 int cell_order(const struct cloud *points, const int64_t *id, double cell, int threads,
                uint32_t *order, struct error *e);
-/* The edge that is best for lists: the mean reach in 3D, 1.3 times that in 2D and 1D; three times as
- * much where reaches range widely, so that dense places are divided by their own density. */
+/* The edge that is best for lists: the mean reach in 3D, 1.3 times that in 2D and 1D; three times
+ * as much where reaches range widely, so that dense places are divided by their own density. */
 double cell_best(const struct cloud *points);
 
 #endif

@@ -1,9 +1,9 @@
 /* neighbours/octree.c -- an octree over the sources in Morton order. A node has up to eight
- * children in any number of dimensions: three halvings of space, x, y and z in 3D, the axes in turns
- * in 2D and 1D. Every child has the box around its sources and the largest reach among them, so
- * that a search costs what the density at the place asks for, whatever the reaches elsewhere. A
- * halving that parts nothing makes no node. Memory: 24 bytes a source while sorting; then, for even
- * sources, some 30, and never more than 600. */
+ * children in any number of dimensions: three halvings of space, x, y and z in 3D, the axes in
+ * turns in 2D and 1D. Every child has the box around its sources and the largest reach among them,
+ * so that a search costs what the density at the place asks for, whatever the reaches elsewhere. A
+ * halving that parts nothing makes no node. Memory: 24 bytes a source while sorting; then, for
+ * even sources, some 30, and never more than 600. */
 #include "neighbours/keys.h"
 #include "neighbours/manager.h"
 

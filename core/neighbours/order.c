@@ -184,9 +184,9 @@ static void halve(struct crowd *c, size_t first, size_t last)
     halve(c, middle, last);
 }
 
-/* Sorts points [first, first + n), which crowd one cell, into groups. Cells are walked upwards along
- * x, and along the others in turns, so that the group at the border of two cells is close together
- * too. */
+/* Sorts points [first, first + n), which crowd one cell, into groups. Cells are walked upwards
+ * along x, and along the others in turns, so that the group at the border of two cells is close
+ * together too. */
 static int sort_crowd(struct sorter *s, size_t first, size_t n, bool turn)
 {
     struct crowd c = {.s = s, .first = first, .turned = {false, turn, turn}, .seed = first};
@@ -241,8 +241,9 @@ static void all_bounds(const struct sorter *s, double *lo, double *hi, size_t th
     }
 }
 
-/* Sorts all points into the cells, in the order in which they stand: each thread counts and moves a
- * share of them. count: [threads][g->n], of which the last thread's are then the ends of the cells. */
+/* Sorts all points into the cells, in the order in which they stand: each thread counts and moves
+ * a share of them. count: [threads][g->n], of which the last thread's are then the ends of the
+ * cells. */
 static void share_sort(struct sorter *s, const struct grid *g, size_t threads, uint32_t *count)
 {
     size_t n = s->c->n;

@@ -1,11 +1,11 @@
-/* neighbours/skin.h -- whether neighbour lists are still right: where particles were when the lists
- * were made, kept compactly, against where they are.
+/* neighbours/skin.h -- whether neighbour lists are still right: where particles were when the
+ * lists were made, kept compactly, against where they are.
  *
- * Positions are kept in 16 bits an axis within the box of 32 particles, h in 16 bits with 11 digits:
- * some 10 bytes a particle in 3D. What rounding can have hidden is added to the displacement and
- * taken off h, so the answer errs on the safe side: by less than 0.001 of the reach, 1 % of a
- * skin of 0.1. Blocks that are too wide for that (with a particle that has flown away) or whose h
- * differ too much are kept as they are. */
+ * Positions are kept in 16 bits an axis within the box of 32 particles, h in 16 bits with 11
+ * digits: some 10 bytes a particle in 3D. What rounding can have hidden is added to the
+ * displacement and taken off h, so the answer errs on the safe side: by less than 0.001 of the
+ * reach, 1 % of a skin of 0.1. Blocks that are too wide for that (with a particle that has flown
+ * away) or whose h differ too much are kept as they are. */
 #ifndef NEIGHBOURS_SKIN_H
 #define NEIGHBOURS_SKIN_H
 

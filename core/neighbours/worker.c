@@ -3,9 +3,9 @@
  *
  * Groups that stand side by side share one search and one copy of the leaves found, in single
  * precision relative to their common centre (a bundle). Each group then takes from that first the
- * leaves, then the points that it sees. A group whose lanes are far apart is taken in pieces. Leaves
- * come ascending, so lists do; only those of pieces, and sources that stand in an order of the
- * search's own, are sorted. */
+ * leaves, then the points that it sees. A group whose lanes are far apart is taken in pieces.
+ * Leaves come ascending, so lists do; only those of pieces, and sources that stand in an order of
+ * the search's own, are sorted. */
 #include "neighbours/worker.h"
 
 #include <math.h>
@@ -103,7 +103,8 @@ static void sort_found(const struct job *j, struct worker *w)
     w->n_found = bitset_take(&w->unsorted, w->found);
 }
 
-/* -- Stretches ------------------------------------------------------------------------------------- */
+/* -- Stretches
+ * ------------------------------------------------------------------------------------- */
 
 static void stretch_init(struct stretch *s, const struct job *j, size_t first, size_t last)
 {

@@ -122,12 +122,12 @@ static inline struct owned cloud_lattice(int dim, size_t m, uint64_t seed)
     return o;
 }
 
-/* Such a lattice's points in a ball, drawn towards its centre, h following the spacing: 100 times
- * as wide at the edge as in the middle. */
+/* Such a lattice's points in a ball, drawn towards its centre, h following the spacing: over 100
+ * times as wide at the edge as in the middle. */
 static inline struct owned cloud_clump(int dim, size_t m, uint64_t seed)
 {
     struct owned o = cloud_lattice(dim, m, seed);
-    double middle = (double)(m - 1) / 2, least = 1e-2 * pow(3, 1.0 / dim);
+    double middle = (double)(m - 1) / 2, least = 9e-3 * pow(3, 1.0 / dim);
     size_t n = 0;
 
     for (size_t i = 0; i < o.c.n; i++) {

@@ -141,6 +141,9 @@ static void check(const struct cloud *d, const struct cloud *s)
 {
     check_with(d, s, filter_best());
     check_with(d, s, filter_plain());
+    if (filter_avx2() && filter_avx2() != filter_best()) {
+        check_with(d, s, filter_avx2());
+    }
 }
 
 /* -- Lists ------------------------------------------------------------------------------------- */

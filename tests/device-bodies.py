@@ -11,6 +11,9 @@ SOURCE = os.environ["top_srcdir"]
 CHECK = os.path.join(BUILD, "sph-plugin-check")
 WRONG = os.path.join(BUILD, "tests/check/.libs/wrong_device.so")
 
+WCSPH = {name: ("ok", f'"{file}.body.h" gives the native numbers in 1, 2, 3 dimensions')
+         for name, file in (("wcsph-continuity", "continuity"), ("wcsph-momentum", "momentum"),
+                            ("wcsph-rates", "continuity"))}
 OURS = {"gsph-density": ("ok", '"density.body.h" gives the native numbers in 1, 2, 3 dimensions'),
         "gsph-gradients": ("ok", '"gradients.body.h" gives the native numbers in 1, 2, 3 dimensions'),
         "gsph-rates": ("ok", '"rates.body.h" gives the native numbers in 1, 2, 3 dimensions')}
@@ -46,7 +49,7 @@ def verdicts(plugin):
 
 def compared():
     """Is there a device?"""
-    for plugin, wanted in (("gsph", OURS), (WRONG, THEIRS)):
+    for plugin, wanted in (("gsph", OURS), ("wcsph", WCSPH), (WRONG, THEIRS)):
         found = verdicts(plugin)
         expect(f"items of {plugin}", set(found) == set(wanted), sorted(found))
         for item, (verdict, words) in wanted.items():
@@ -74,6 +77,8 @@ def embedded(library, *files):
 
 embedded(os.path.join(BUILD, "plugins/.libs/gsph.so"), "plugins/gsph/density.body.h",
          "plugins/gsph/gradients.body.h", "plugins/gsph/rates.body.h", "plugins/gsph/rates.macros.h")
+embedded(os.path.join(BUILD, "plugins/.libs/wcsph.so"), "plugins/wcsph/continuity.body.h",
+         "plugins/wcsph/momentum.body.h")
 embedded(WRONG, "tests/check/device.body.h", "tests/check/device.macros.h")
 there = compared()
 sys.exit(1 if missed else 0 if there else 77)

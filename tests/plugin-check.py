@@ -30,7 +30,7 @@ def expect(what, good, detail=""):
 
 
 # Ours.
-for plugin in ("gsph", "eos", "exact", "kernels"):
+for plugin in ("gsph", "wcsph", "eos", "exact", "kernels"):
     code, out, err = run(plugin)
     expect(plugin, code == 0 and "FAIL" not in out and " 0 failed" in out.splitlines()[-1] and not err, out + err)
 code, out, err = run("kernels", "gsph", "--only", "gsph", "-q")
@@ -65,6 +65,14 @@ PAIR = {
     "divides-by-none": "divides an integer by zero",
     "depends-on-pieces": '"sum" of particle 496 is 2, but was 4 in one piece',
 }
+PATH = {
+    "right-in-both": None,
+    "drops-bits": "by the best loop in floats, by the plain loop in long doubles",
+    "takes-floats-for-doubles": 'touches x, beyond its end',
+    "other-on-old-processors": "by base in doubles, by the plain loop in long doubles",
+    "refuses-floats": "the best loop in floats fails with status",
+    "depends-on-pieces-in-floats": 'in floats and pieces of 56, "sum" of particle 56 is',
+}
 EOS = {
     "right-gas": None,
     "stiff-gas": None,
@@ -84,7 +92,7 @@ RECIPE = {
     "splits-wrongly": 'born, 1 dimension, 1000 particles: "m" of particle 0 is nan',
     "takes-any-format": "restore takes format 1003, which it has never written",
 }
-for name, items in (("wrong_point", POINT), ("wrong_pair", PAIR), ("wrong_eos", EOS), ("wrong_recipe", RECIPE)):
+for name, items in (("wrong_point", POINT), ("wrong_pair", PAIR), ("wrong_path", PATH), ("wrong_eos", EOS), ("wrong_recipe", RECIPE)):
     code, out, err = run(module(name))
     expect(f"{name}: exit code", code == 1, f"{code}: {out}{err}")
     lines = out.splitlines()

@@ -88,9 +88,9 @@ typedef struct sph_batch {
     const uint16_t *list;
     uint32_t same; /* 1: destination and source are the same array, so i == j is the self pair */
     uint32_t path; /* SPH_PATH_... */
-    double
-        quantum; /* with SPH_F32: the unit of positions; x_i - x_j is quantum times the difference
-                     * of two whole numbers, which is exact. 0 otherwise */
+    /* With SPH_F32: the unit of positions; x_i - x_j is quantum times the difference of two whole
+     * numbers, which is exact. 0 otherwise. */
+    double quantum;
     uint32_t uniform_h; /* pair functions: 1: every h of both arrays is the same number */
     uint32_t reserved;
     /* Position and smoothing length [the scene's unit of length], over which the list was made: the

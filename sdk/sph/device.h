@@ -29,8 +29,10 @@ typedef struct sph_device_body {
     uint32_t reach; /* SPH_GATHER or SPH_SYMMETRIC; no more than the function's */
     uint32_t self;  /* 1: the body also gets the self pair (r = 0); else 0 */
     uint32_t reserved;
-    const char *text; /* of one pair, ended by NUL */
-    const char *file; /* whose text it is, for messages: "density.body.h" */
+    const char *text; /* of one pair, ended by NUL; several bodies are joined by "}", "{" */
+    /* Whose text it is, for messages: "density.body.h". Of several the first; their lines count on
+     * from its last. */
+    const char *file;
     /* Text that stands before the loop: macros of the body, which the native build has from an
      * #include of the same file. NULL: none. */
     const char *prelude;

@@ -3,6 +3,7 @@
  * instruction set and precision, with SPH_ISA (a suffix), SPH_WIDTH (lanes of a vector) and
  * SPH_F32_WORDS (1: reals are floats) defined; the same words mean OpenCL's on a device.
  *
+ *   T s = (T)1.0 - alpha;            one real, such as a parameter is
  *   R a = sph_num(0.1);              a constant in every lane; one that a float holds exactly
  *                                    needs none: 0.5 * a
  *   a + b, a * b, a / b, -a          as ever;  a < b, a >= b ... give a B;  m & n, m | n, ~m

@@ -1,15 +1,16 @@
 /* sph/pair-loop.h -- expands a plugin's pair body into the loops of a sweep: for one, two and three
- * dimensions and for each instruction set, vectorised over the destinations of a group, the sources
- * broadcast. Define, then include this (as often as there are sweeps in a file):
+ * dimensions, for each instruction set and precision, and without vectors at all (SPH_PATH_... in
+ * batch.h): over the destinations of a group, the sources broadcast (pair-group.h), or where vectors
+ * are short over the sources of one destination (pair-list.h). Define, then include this (as often as there are sweeps in a file):
  *
  *   #define SPH_LOOP my_sweep                 name of the sph_range_fn that is made (static)
  *   #define SPH_LOOP_I(S, V, M) S(rho, 2)     destination values: rho_i from declared property 2;
  *                                             V: vectors v_i[DIM]; M: matrices g_i[DIM * DIM]
- *   #define SPH_LOOP_J(S, V, M) S(m, 3)       source values: m_j, the same in every lane
+ *   #define SPH_LOOP_J(S, V, M) S(m, 3)       source values: m_j
  *   #define SPH_LOOP_SUM(S, V, M) S(s, 4)     accumulators s (scalar), a[DIM], g[DIM * DIM]: they
  *                                             start at 0 and are added to declared property 4
  *   #define SPH_LOOP_MIN(S) S(dt, 5)          likewise by minimum; SPH_LOOP_MAX by maximum
- *   #define SPH_LOOP_PARAM(P) P(alpha, 0)     parameter 0 as a double named alpha
+ *   #define SPH_LOOP_PARAM(P) P(alpha, 0)     parameter 0 as a T named alpha
  *   #define SPH_LOOP_REACH SPH_SYMMETRIC      or SPH_GATHER
  *   #define SPH_LOOP_SELF 1                   1: the body also gets the self pair (r = 0)
  *   #define SPH_LOOP_BODY "my_sweep.body.h"   the body, found by the include path
@@ -26,7 +27,7 @@
  * Leave out the lists that are not needed. Within the body there are besides:
  *   DIM; dx[DIM] = x_i - x_j; r2, r, rinv (1 / r, 0 for the self pair); h_i, hinv_i, h_j, hinv_j;
  *   K, the kernel; in, the mask of lanes that are within reach; sph_add(acc, value),
- *   sph_take_min(acc, value), sph_take_max(acc, value), which touch those lanes only: a body may
+ *   sph_sub(acc, value), sph_take_min(acc, value), sph_take_max(acc, value), which touch those lanes only: a body may
  *   give NaN in the others; b, the batch (b->time, b->dt). See lanes.h for the words.
  * The kernel's argument is r * hinv; W(r, h) = sph_ipow(hinv, DIM) * sph_w(K, r * hinv) and
  * dW/dr = sph_ipow(hinv, DIM + 1) * sph_dw(K, r * hinv).

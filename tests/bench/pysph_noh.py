@@ -13,6 +13,7 @@ import argparse
 import json
 import os
 import resource
+import shutil
 import signal
 import statistics
 import subprocess
@@ -237,6 +238,8 @@ def main():
     if lack:
         print(f"no PySPH for {options.python} (Debian: python3-pysph): {lack}")
         sys.exit(77)
+    if not shutil.which(options.sph):
+        parser.error(f"no program {options.sph}: set SPH, or give --sph")
     compare(options)
 
 

@@ -23,7 +23,7 @@ struct machine {
     struct machine_width width[MACHINE_WIDTHS];
 };
 
-/* Measures with so many threads, or with those of OpenMP's default where 0. Takes about two seconds.
+/* Measures with so many threads, or with those of OpenMP's default where 0. Takes some seconds.
  * Every figure is the best of some repetitions: what others do meanwhile only slows them. The bandwidths
  * stay 0 where there is no memory for the arrays. */
 void machine_measure(struct machine *m, int threads);

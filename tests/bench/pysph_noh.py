@@ -5,13 +5,16 @@ particle's update, their ratio, and the errors. By hand only; about ten minutes,
     pysph_noh.py [--until .1] [--solver N] [--threads 1,2] [--python /usr/bin/python3] [--report FILE]
 
 PySPH runs its own example as it ships it, in Cython on one core; timed is its loop over the steps:
-neither imports nor the compilation of its equations. Of sph the whole process is timed: start, loop,
-snapshots and picture. PySPH's other Riemann solvers: with van Leer's (--solver 1) particles clump, with
-the exact one (2) and HLLC (3) it fails."""
+neither imports nor the compilation of its equations. Now and then it is stopped for a run of sph, so that
+both see the same machine. Of sph the whole process is timed, start, loop, snapshots and picture, and the
+median counts. PySPH's other Riemann solvers: with van Leer's (--solver 1) particles clump, with the exact
+one (2) and HLLC (3) it fails."""
 import argparse
 import json
 import os
 import resource
+import shutil
+import signal
 import statistics
 import subprocess
 import sys
@@ -43,6 +46,7 @@ def peer(out, until, solver):
             total += found.length
         return total / real
 
+    out_file = sys.stdout
     with contextlib.redirect_stdout(sys.stderr):
         app = NohImplosion(fname="noh", output_dir=out)
         app.setup(
@@ -50,6 +54,7 @@ def peer(out, until, solver):
         )
         fluid = app.particles[0]
         at_start = neighbours(fluid)
+        print("solving", file=out_file, flush=True)
         wall, cpu = time.perf_counter(), time.process_time()
         app.solver.solve(show_progress=False)
         wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
@@ -80,16 +85,40 @@ def peer(out, until, solver):
     )
 
 
-def run_peer(options, scratch):
-    """Runs peer() in PySPH's interpreter, with one thread whatever the libraries would like."""
+def run_peer(options, scratch, between):
+    """Runs peer() in PySPH's interpreter, with one thread whatever the libraries would like. Now and then it
+    is stopped, and between() is called: both see the same machine, whatever else it does meanwhile."""
     environment = dict(os.environ, OMP_NUM_THREADS="1", PYTHONDONTWRITEBYTECODE="1")
     command = [options.python, os.path.abspath(__file__), "--peer", scratch]
     command += ["--until", str(options.until), "--solver", str(options.solver)]
-    # Its example and compyle write where they stand.
-    done = subprocess.run(command, cwd=scratch, env=environment, capture_output=True, text=True)
-    if done.returncode != 0:
-        sys.exit(f"PySPH failed ({done.returncode}):\n{done.stdout[-2000:]}{done.stderr[-4000:]}")
-    return json.loads(done.stdout.splitlines()[-1])
+    stopped = 0.0
+    with open(os.path.join(scratch, "said"), "w+") as said:
+        # Its example and compyle write where they stand.
+        child = subprocess.Popen(
+            command, cwd=scratch, env=environment, stdout=subprocess.PIPE, stderr=said, text=True
+        )
+        try:
+            while child.stdout.readline() not in ("solving\n", ""):
+                pass
+            while True:
+                try:
+                    rest, _ = child.communicate(timeout=options.every)
+                    break
+                except subprocess.TimeoutExpired:
+                    child.send_signal(signal.SIGSTOP)
+                    since = time.perf_counter()
+                    between()
+                    stopped += time.perf_counter() - since
+                    child.send_signal(signal.SIGCONT)
+        finally:
+            # A stopped one dies, too.
+            child.kill()
+        said.seek(0)
+        if child.returncode != 0:
+            sys.exit(f"PySPH failed ({child.returncode}):\n{said.read()[-600:]}")
+    result = json.loads(rest.splitlines()[-1])
+    result["wall"] -= stopped
+    return result
 
 
 def run_sph(options, scratch, threads):
@@ -102,6 +131,7 @@ def run_sph(options, scratch, threads):
     wall = time.perf_counter()
     subprocess.run(command, check=True)
     wall = time.perf_counter() - wall
+    # Children that have ended: not the peer.
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
     with open(os.path.join(out, "summary.json")) as file:
         summary = json.load(file)
@@ -156,15 +186,13 @@ def compare(options):
         def tell(text=""):
             say(report, text)
 
-        def rounds(times):
-            for _ in range(times):
-                for count in threads:
-                    runs[count].append(run_sph(options, scratch, count))
+        def runs_of_sph():
+            for count in threads:
+                runs[count].append(run_sph(options, scratch, count))
 
-        # Before and after its peer, so that both see the same machine.
-        rounds(1)
-        pysph = run_peer(options, scratch)
-        rounds(2)
+        runs_of_sph()
+        pysph = run_peer(options, scratch, runs_of_sph)
+        runs_of_sph()
         if not pysph["finite"]:
             sys.exit("PySPH's densities are not finite: try another --solver")
 
@@ -192,6 +220,7 @@ def main():
     parser.add_argument("--until", type=float, default=END, help="end both at this time (.6)")
     parser.add_argument("--solver", type=int, default=7, help="PySPH's Riemann solver (7)")
     parser.add_argument("--threads", default="1,2", help="of sph (1,2)")
+    parser.add_argument("--every", type=float, default=60, help="seconds of PySPH between runs of sph (60)")
     parser.add_argument("--sph", default=os.environ.get("SPH", "sph"))
     parser.add_argument("--python", default="/usr/bin/python3", help="an interpreter with PySPH")
     parser.add_argument("--report", help="a file for what is printed")
@@ -209,6 +238,8 @@ def main():
     if lack:
         print(f"no PySPH for {options.python} (Debian: python3-pysph): {lack}")
         sys.exit(77)
+    if not shutil.which(options.sph):
+        parser.error(f"no program {options.sph}: set SPH, or give --sph")
     compare(options)
 
 

@@ -154,6 +154,17 @@ static void put_passes(struct maker *m, cJSON *cost, const struct summary *s)
     }
 }
 
+static void put_memory(struct maker *m, cJSON *cost, const struct summary_memory *memory)
+{
+    cJSON *o = put_object(m, cost, "memory_per_particle");
+    put_number(m, o, "columns", memory->columns);
+    put_number(m, o, "mirrors", memory->mirrors);
+    put_number(m, o, "lists", memory->lists);
+    put_number(m, o, "places", memory->places);
+    put_number(m, o, "ghosts", memory->ghosts);
+    put_number(m, o, "search", memory->search);
+}
+
 static void put_cost(struct maker *m, cJSON *root, const struct summary *s)
 {
     cJSON *c = put_object(m, root, "cost");
@@ -167,11 +178,13 @@ static void put_cost(struct maker *m, cJSON *root, const struct summary *s)
     put_count(m, c, "particle_updates", s->cost.particle_updates);
     put_count(m, c, "pairs", s->cost.pairs);
     put_count(m, c, "list_builds", s->cost.list_builds);
+    put_count(m, c, "sorts", s->cost.sorts);
     put_count(m, c, "h_sweeps", s->cost.h_sweeps);
     put_number(m, c, "ns_per_pair", summary_ns_per_pair(s));
     put_number(m, c, "us_per_particle_update", summary_us_per_update(s));
     put_count(m, c, "peak_rss_bytes", s->cost.peak_rss);
     put_number(m, c, "bytes_per_particle", s->cost.bytes_per_particle);
+    put_memory(m, c, &s->cost.memory);
     put_count(m, c, "threads", (uint64_t)(s->threads > 0 ? s->threads : 1));
     put_count(m, c, "ranks", (uint64_t)(s->ranks > 0 ? s->ranks : 1));
 }

@@ -27,10 +27,16 @@ struct summary_plugin {
     const char *name, *version, *file;
     uint32_t abi_major, abi_minor;
 };
+/* Bytes held for a particle; search is the search's for neighbours, while it goes on. */
+struct summary_memory {
+    double columns, mirrors, lists, places, ghosts, search;
+};
 struct summary_cost {
     double wall, loop, neighbour, integrate, io, mpi; /* [s] of wall time */
     uint64_t particle_updates, pairs, list_builds, h_sweeps, peak_rss;
-    double bytes_per_particle;
+    uint64_t sorts;
+    double bytes_per_particle; /* all of memory but the search */
+    struct summary_memory memory;
 };
 
 struct summary {

@@ -12,7 +12,7 @@ static const char *type_name(uint32_t type)
     case SPH_VECTOR:
         return "vector";
     case SPH_SYM:
-        return "symmetric tensor";
+        return "sym. tensor";
     case SPH_MATRIX:
         return "matrix";
     case SPH_INT32:
@@ -59,7 +59,7 @@ static void item(struct line *l, const char *word)
 }
 
 /* Words from column DOC_COLUMN on, in as many lines as they take. */
-#define DOC_COLUMN 49
+#define DOC_COLUMN 51
 static void print_doc(const char *text, FILE *out)
 {
     int column = DOC_COLUMN;
@@ -101,12 +101,31 @@ static void print_pass(const struct plan *plan, const struct pass *p, size_t num
                                                  : "pair, r < support max(h_i, h_j)";
     fprintf(out, "  %2zu  %-28s %-9s %s%s\n", number, p->name, moment_name[p->moment], shape,
             p->max_sweeps ? ", repeated" : "");
+    if (p->real == SPH_F32)
+        fprintf(out, "      %-11s floats\n", "sums in");
+    if (p->use.entry && p->use.entry->n_part) {
+        struct line l = {.out = out, .indent = 17};
+        l.column = fprintf(out, "      %-11s", "in one");
+        for (size_t k = 0; k < p->use.entry->n_part; k++)
+            item(&l, p->use.entry->part[k]);
+        fprintf(out, "\n");
+    }
+    if (p->frame)
+        fprintf(out, "      %-11s %s%s\n", "neighbours", plan->frame[p->frame].name,
+                plan->frame[p->frame].frozen ? ", found once" : "");
     print_access(plan, p, "reads", SPH_DST_READ, false, out);
     print_access(plan, p, "from pairs", SPH_SRC_READ, true, out);
     print_access(plan, p, "writes", SPH_DST_WRITE, false, out);
     print_access(plan, p, "sums", SPH_DST_SUM, false, out);
     print_access(plan, p, "takes min", SPH_DST_MIN, false, out);
     print_access(plan, p, "takes max", SPH_DST_MAX, false, out);
+}
+
+/* Bytes of an element, and of its mirror. */
+static const char *held(const struct plan_array *a, size_t c)
+{
+    const struct column *column = &a->p.column[c];
+    return a->in_floats[c] || column->size == 4 ? "4" : a->mirrored[c] ? "8 + 4" : "8";
 }
 
 static void print_array(const struct plan *plan, size_t index, FILE *out)
@@ -118,8 +137,8 @@ static void print_array(const struct plan *plan, size_t index, FILE *out)
             plan->has_kernel ? 2.0 * (neighbours(plan, a) * 2.6) / SPH_LANES : 0.0);
     for (size_t c = 0; c < a->p.n_column; c++) {
         const struct column *column = &a->p.column[c];
-        fprintf(out, "    %-8s %-16s %-5s %-12s ", column->name, type_name(column->type),
-                column->state ? "state" : "", column->unit ? column->unit : "");
+        fprintf(out, "    %-8s %-11s %-6s %-5s %-12s ", column->name, type_name(column->type),
+                held(a, c), column->state ? "state" : "", column->unit ? column->unit : "");
         print_doc(column->doc ? column->doc : "", out);
     }
     for (size_t k = 0; k < a->n_rate; k++)
@@ -219,10 +238,10 @@ void plan_print(const struct plan *plan, FILE *out)
 {
     const char *title = plan->scene->title;
     fprintf(out, "%s\n", title && title[0] ? title : plan->scene->doc->path);
-    fprintf(out, "  scheme %s, kernel %s, integrator %s, %d dimension%s, cfl %g\n",
+    fprintf(out, "  scheme %s, kernel %s, integrator %s, %d dimension%s, cfl %g, %s\n",
             plan->scheme_name ? plan->scheme_name : "none",
             plan->kernel_name ? plan->kernel_name : "none", plan->integrator->name, plan->dim,
-            plan->dim == 1 ? "" : "s", plan->cfl);
+            plan->dim == 1 ? "" : "s", plan->cfl, precision_name[plan->precision]);
     fprintf(out, "arrays\n");
     for (size_t a = 0; a < plan->n_array; a++)
         print_array(plan, a, out);
@@ -245,7 +264,7 @@ void plan_print(const struct plan *plan, FILE *out)
     double pairs = expected_pairs(plan);
     fprintf(out, "expected\n  pairs a step     %.3g\n", pairs);
     if (isfinite(pairs) && pairs > 0.0)
-        fprintf(out, "  seconds a step   %.2g (at 20 ns a pair, one thread)\n", 20e-9 * pairs);
+        fprintf(out, "  seconds a step   %.2g (at 6 ns a pair, one thread)\n", 6e-9 * pairs);
 }
 
 static void add_names(cJSON *to, const char *key, const struct pass *p, uint32_t access)
@@ -277,6 +296,12 @@ cJSON *plan_json(const struct plan *plan)
         cJSON_AddStringToObject(one, "name", p->name);
         cJSON_AddStringToObject(one, "at", moment_name[p->moment]);
         cJSON_AddStringToObject(one, "shape", p->shape == SPH_POINT ? "point" : "pair");
+        if (p->shape == SPH_PAIR)
+            cJSON_AddStringToObject(one, "sums_in", p->real == SPH_F32 ? "floats" : "doubles");
+        cJSON *parts =
+            p->use.entry && p->use.entry->n_part ? cJSON_AddArrayToObject(one, "parts") : NULL;
+        for (size_t k = 0; parts && k < p->use.entry->n_part; k++)
+            cJSON_AddItemToArray(parts, cJSON_CreateString(p->use.entry->part[k]));
         add_names(one, "reads", p, SPH_DST_READ);
         add_names(one, "reads_sources", p, SPH_SRC_READ);
         add_names(one, "writes", p, SPH_DST_WRITE | SPH_DST_SUM | SPH_DST_MAX | SPH_DST_MIN);
@@ -285,6 +310,7 @@ cJSON *plan_json(const struct plan *plan)
     cJSON_AddStringToObject(root, "integrator", plan->integrator->name);
     cJSON_AddStringToObject(root, "kernel", plan->kernel_name ? plan->kernel_name : "");
     cJSON_AddNumberToObject(root, "cfl", plan->cfl);
+    cJSON_AddStringToObject(root, "precision", precision_name[plan->precision]);
     cJSON_AddNumberToObject(root, "expected_pairs_per_step", expected_pairs(plan));
     return root;
 }

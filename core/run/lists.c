@@ -242,7 +242,7 @@ struct run_memory run_memory(const struct run *r)
         m.search = r->list[k].search_bytes > m.search ? r->list[k].search_bytes : m.search;
     }
     for (size_t k = 0; k < n * r->plan->n_frame; k++)
-        m.reference += skin_bytes(&r->kept[k]);
+        m.places += skin_bytes(&r->kept[k]);
     for (size_t a = 0; a < n; a++)
         m.ghosts += r->ghosts[a].capacity * (sizeof(uint32_t) + sizeof(uint8_t));
     return m;

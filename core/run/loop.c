@@ -369,14 +369,28 @@ static int parts_make(const struct loop *l, struct summary_parts *q, bool good, 
                : 0;
 }
 
-static double bytes_per_particle(const struct loop *l)
+/* Bytes for a particle, item by item. */
+static struct summary_memory memory_of(const struct loop *l)
 {
     const struct plan *plan = l->run.plan;
     const struct run_memory m = run_memory(&l->run);
-    double bytes = (double)(m.lists + m.reference + m.ghosts), n = (double)particles_total(plan);
-    for (size_t a = 0; a < plan->n_array; a++)
-        bytes += (double)(particles_bytes(&plan->array[a].p) * plan->array[a].p.n);
-    return n > 0.0 ? bytes / n : 0.0;
+    const double n = (double)particles_total(plan);
+    struct summary_memory out = {0};
+    if (!(n > 0.0))
+        return out;
+    for (size_t a = 0; a < plan->n_array; a++) {
+        const struct particles *p = &plan->array[a].p;
+        for (size_t c = 0; c < p->n_column; c++) {
+            const struct column *k = &p->column[c];
+            out.columns += (double)(k->ncomp * k->size * p->n) / n;
+            out.mirrors += k->mirror ? (double)(k->ncomp * 4 * p->n) / n : 0.0;
+        }
+    }
+    out.lists = (double)m.lists / n;
+    out.places = (double)m.places / n;
+    out.ghosts = (double)m.ghosts / n;
+    out.search = (double)m.search / n;
+    return out;
 }
 
 static int summarise(struct loop *l, const char *status, const char *reason, struct error *e)
@@ -427,7 +441,10 @@ static int summarise(struct loop *l, const char *status, const char *reason, str
     for (size_t i = 0; i < r->plan->n_pass; i++)
         s.cost.h_sweeps += r->plan->pass[i].max_sweeps ? r->plan->pass[i].sweeps : 0;
     s.cost.peak_rss = (uint64_t)usage.ru_maxrss * 1024u;
-    s.cost.bytes_per_particle = bytes_per_particle(l);
+    s.cost.sorts = r->cost.sorts;
+    s.cost.memory = memory_of(l);
+    s.cost.bytes_per_particle = s.cost.memory.columns + s.cost.memory.mirrors +
+                                s.cost.memory.lists + s.cost.memory.places + s.cost.memory.ghosts;
     int result = summary_write(&s, l->out, e);
     if (!result && l->options->table)
         summary_table(&s, stdout);

@@ -73,7 +73,8 @@ static inline void run_changed(struct run *r, size_t array, int column)
 
 /* Bytes held beside the particles' columns. */
 struct run_memory {
-    size_t lists, reference, ghosts, search; /* search: at its peak, while lists are made */
+    size_t lists, places, ghosts,
+        search; /* places: when they were made; search: while they are made */
 };
 struct run_memory run_memory(const struct run *r);
 

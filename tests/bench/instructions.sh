@@ -63,7 +63,7 @@ count() {
         --quiet --out "$scratch/run" --set output.picture=false "$@" >"$scratch/said" 2>&1 ||
         { cat "$scratch/said" >&2; return 1; }
     callgrind_annotate --inclusive=yes --threshold=100 --auto=no "$scratch/out" |
-        sed -n 's/^ *\([0-9,]*\) .*[^A-Za-z0-9_][A-Za-z0-9_]*_avx2_[123]\( .*\)\{0,1\}$/\1/p' |
+        sed -n 's/^ *\([0-9,]*\) .*[^A-Za-z0-9_][A-Za-z0-9_]*_avx2_f[36][24]_[123]_[0-4]\( .*\)\{0,1\}$/\1/p' |
         tr -d , | awk '{ sum += $1 } END { printf "%.0f", sum }'
 }
 

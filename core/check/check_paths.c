@@ -358,7 +358,7 @@ static int make_start(struct trial *t, struct error *e)
 static int try_setup(struct trial *t, struct error *e)
 {
     static const struct way extended = {SPH_PATH_EXTENDED, "the plain loop in long doubles"};
-    const bool floats = t->function->reals & SPH_F32;
+    const bool floats = t->function->reals & SPH_F32 && !t->function->over;
 
     if (make_kernel(t, e) || make_start(t, e) || take_terms(t, e) ||
         run(t, &extended, false, PARTICLES, &t->extended, e))
@@ -419,7 +419,7 @@ void check_paths(const struct subject *s)
             dims, t.worst[0], t.worst_name[0], BAR_F64);
     else
         say(s, VERDICT_NOTE, "has one way to run");
-    if (t.function->reals & SPH_F32)
+    if (t.function->reals & SPH_F32 && !t.function->over)
         say(s, VERDICT_OK,
             "floats give what doubles do in %s: apart by at most %.1e of the sum of absolute terms "
             "(%s; bar %.1e)",

@@ -39,11 +39,11 @@ static const struct way {
 /* What the loops meet. */
 static const struct setup {
     const char *words;
-    bool wendland, one_h;
+    bool one_piece, one_h;
 } setups[] = {
     {"a spline", false, false},
-    {"Wendland's C2", true, false},
-    {"Wendland's C2, one smoothing length", true, true},
+    {"a kernel of one piece", true, false},
+    {"a kernel of one piece, one smoothing length", true, true},
 };
 #define N_SETUPS (sizeof(setups) / sizeof(setups[0]))
 
@@ -296,12 +296,12 @@ static int make_kernel(struct trial *t, struct error *e)
 {
     static const sph_kernel_term terms[] = {{5. / 16, 2, 4, 0}, {-2. / 16, 2, 5, 0}};
     static const sph_item item = {
-        .size = (uint32_t)sizeof(item), .dims = SPH_ALL_DIMS, .name = "wendland-c2"};
+        .size = (uint32_t)sizeof(item), .dims = SPH_ALL_DIMS, .name = "one-piece"};
     const int dim = t->bench->shape.dim;
     sph_kernel kernel = {.size = (uint32_t)sizeof(kernel), .item = &item, .support = 2};
 
     t->kernel = t->bench->kernel;
-    if (!t->setup->wendland)
+    if (!t->setup->one_piece)
         return 0;
     kernel.norm[dim] = t->bench->kernel.norm;
     kernel.terms[dim] = (sph_list)SPH_LIST(terms);
@@ -385,7 +385,7 @@ static int try_dim(struct trial *t, int dim, struct error *e)
     for (size_t k = 0; k < N_SETUPS && !status && !t->failed; k++) {
         t->setup = &setups[k];
         status = try_setup(t, e);
-        if (t->setup->wendland)
+        if (t->setup->one_piece)
             kernel_form_fini(&t->kernel);
     }
     image_free(&t->start, t->bench);

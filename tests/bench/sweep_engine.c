@@ -161,7 +161,9 @@ void engine_place(struct engine *g, double offset)
                              engine_skin[skin], NULL, 1, &e),
              &e);
     }
-    g->pairs = (double)group_list_count(&g->list[1][0], &g->cloud, &g->cloud, 1);
+    /* It counts each particle as its own neighbour, too. */
+    const uint64_t count = group_list_count(&g->list[1][0], &g->cloud, &g->cloud, 1);
+    g->pairs = (double)(count - g->p.n);
     engine_mirror(g);
 }
 

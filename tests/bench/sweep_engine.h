@@ -21,7 +21,7 @@ struct engine {
     double quantum; /* of positions' mirrors */
     struct cloud cloud;
     struct group_list list[2][ENGINE_SKINS]; /* [gather, symmetric] */
-    double pairs;                            /* true ones, directed */
+    double pairs;                            /* true ones, directed; none with itself */
 };
 
 /* A function, its parameters and its columns. */

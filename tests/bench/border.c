@@ -61,7 +61,7 @@ static int fill(struct fluid *f, struct cloud *cloud, struct error *e)
     }
     *cloud = (struct cloud){
         .dim = 3, .n = N, .x = {x, x + PLANE, x + 2 * PLANE}, .h = f->h, .scale = 2.0};
-    if (cell_order(cloud, NULL, 2.6 * dx, order, e))
+    if (cell_order(cloud, NULL, 2.6 * dx, 1, order, e))
         return -1;
     for (int c = 0; c < 3; c++) {
         for (int i = 0; i < N; i++)
@@ -203,7 +203,7 @@ static int measure(const struct registry *r, uint64_t chunk, int timed, struct e
         return error_set(e, EXIT_RUN, "the two sides differ: %g, %g", f->inside[N / 2],
                          f->out[N / 2]);
     printf("%d particles, %.1f neighbours each, %.1f in a group's list\n", N,
-           (double)group_list_count(&list, &cloud, &cloud) / N,
+           (double)group_list_count(&list, &cloud, &cloud, 1) / N,
            (double)group_list_entries(&list, 0, list.n_group) / (double)list.n_group);
     if (timed)
         compare_times(f, run, &b);

@@ -5,12 +5,13 @@
  * defined where lists for single destinations are faster than groups (pair-list.h). With
  * SPH_NO_MULTIVERSION defined there is the plain set alone. */
 
-/* The plain set: what every processor of the architecture has (on x86-64: SSE2, 16 bytes). */
-#define SPH_FORM_LIST
+/* The plain set: what every processor of the architecture has (on x86-64: SSE2, 16 bytes). Two doubles
+ * in a vector: lists cost 13 ns a pair where groups cost 23; four floats: groups 8, lists 11. */
 #if defined(__x86_64__)
 #include <immintrin.h>
 #define SPH_SSE2_WORDS
 #endif
+#define SPH_FORM_LIST
 #define SPH_ISA base_f64
 #define SPH_WIDTH 2
 #define SPH_F32_WORDS 0
@@ -22,6 +23,7 @@
 #undef SPH_ISA
 #undef SPH_WIDTH
 #undef SPH_F32_WORDS
+#undef SPH_FORM_LIST
 #ifdef SPH_EACH_F32
 #define SPH_ISA base_f32
 #define SPH_WIDTH 4
@@ -35,7 +37,6 @@
 #undef SPH_WIDTH
 #undef SPH_F32_WORDS
 #endif
-#undef SPH_FORM_LIST
 #undef SPH_SSE2_WORDS
 
 #if defined(__x86_64__) && !defined(SPH_NO_MULTIVERSION)

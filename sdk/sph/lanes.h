@@ -99,31 +99,11 @@ SPH_INLINE R SPH_OF_ISA(sph_load_)(const T *p)
 }
 
 #ifdef SPH_FORM_LIST
-/* p[k[0]], p[k[1]] ... */
+/* p[k[0]], p[k[1]]: what the loop over lists has in its lanes. */
 SPH_INLINE R SPH_OF_ISA(sph_gather_)(const T *p, const uint32_t *k)
 {
-#if SPH_WIDTH == 2
-    const R out = {p[k[0]], p[k[1]]};
-#else
-    const R out = {p[k[0]], p[k[1]], p[k[2]], p[k[3]]};
-#endif
-    return out;
+    return (R){p[k[0]], p[k[1]]};
 }
-
-/* x - p[k[0]], x - p[k[1]] ... of positions. */
-#if SPH_F32_WORDS
-SPH_INLINE R SPH_OF_ISA(sph_step_)(int32_t x, const int32_t *p, const uint32_t *k, T quantum)
-{
-    const B d = {x - p[k[0]], x - p[k[1]], x - p[k[2]], x - p[k[3]]};
-    return __builtin_convertvector(d, R) * quantum;
-}
-#else
-SPH_INLINE R SPH_OF_ISA(sph_step_)(double x, const double *p, const uint32_t *k, T quantum)
-{
-    (void)quantum;
-    return x - SPH_OF_ISA(sph_gather_)(p, k);
-}
-#endif
 #endif
 
 /* -- What x86-64 has an instruction for that no compiler finds by itself ------------------------ */

@@ -1,4 +1,4 @@
-/* sph/pair-list.h -- the loop over single destinations, for instruction sets with short vectors: the
+/* sph/pair-list.h -- the loop over single destinations, for vectors of two doubles: the
  * sources within reach are listed first, then SPH_WIDTH of them at a time stand in the lanes of R.
  * The inside of pair-dims.h, in place of pair-group.h. */
 
@@ -51,11 +51,6 @@ static sph_status SPH_LOOP_NAME(const sph_batch *b)
         x_d[c] = SPH_X(b->x_dst, c);
     }
     const T *const h_s = SPH_P(b->h_src, 0);
-#if SPH_F32_WORDS
-    const T quantum = (T)b->quantum;
-#else
-    const T quantum = 1.0;
-#endif
     SPH_LOOP_J(SPH_S_S, SPH_S_V, SPH_S_M)
     SPH_LOOP_PARAM(SPH_PARAM_OF)
     const uint64_t end = b->first + b->count, sph_self = SPH_LOOP_SELF || !b->same;
@@ -85,7 +80,7 @@ static sph_status SPH_LOOP_NAME(const sph_batch *b)
                     const uint32_t j = b->span[sph_s].base + sph_steps[sph_q];
                     T d2 = 0, reach2 = reach2_i;
                     for (int c = 0; c < DIM; c++) {
-                        const T d = (T)(x_d[c][i] - x_s[c][j]) * quantum;
+                        const T d = x_d[c][i] - x_s[c][j];
                         d2 += d * d;
                     }
                     if (!SPH_UNIFORM && SPH_LOOP_REACH != SPH_GATHER) {
@@ -101,7 +96,7 @@ static sph_status SPH_LOOP_NAME(const sph_batch *b)
                     const B in = sph_first < (SPH_INT)(sph_found - sph_q);
                     R dx[DIM], r2 = {0};
                     for (int c = 0; c < DIM; c++) {
-                        dx[c] = SPH_OF_ISA(sph_step_)(x_d[c][i], x_s[c], sph_near + sph_q, quantum);
+                        dx[c] = x_d[c][i] - SPH_OF_ISA(sph_gather_)(x_s[c], sph_near + sph_q);
                         r2 += dx[c] * dx[c];
                     }
                     const R h_j =

@@ -20,7 +20,7 @@ def functions(path, isa):
     for line in listing.splitlines():
         head = re.match(r"[0-9a-f]+ <(.+)>:$", line)
         if head:
-            inside = re.search(rf"_{isa}_[123]\b", head[1]) is not None
+            inside = re.search(rf"_{isa}_f(64|32)_[123]_[0-4]\b", head[1]) is not None
             if inside:
                 found.append((head[1], []))
         elif inside and "\t" in line:

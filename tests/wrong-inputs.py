@@ -156,6 +156,9 @@ for word, hint in (("mixt", '(did you mean "mixed"?)'), ("Mixed", '(did you mean
                    ("quadruple-precise", "double, mixed, single"), ("", "the text is empty")):
     change('"output":', f'"precision": @"{word}", "output":', "/precision: ", hint)
 change('"output":', '"precision": @32, "output":', "/precision: ")
+change('"output":', '"neighbours": {"manager": @"boxs"}, "output":', "/neighbours/manager: ", '"boxs"',
+       '(did you mean "boxes"?)')
+change('"output":', '"neighbours": {"manager": @"tree"}, "output":', "/neighbours/manager: ", '"tree"')
 change('"output":', '"neighbours": {"manager": @3}, "output":', "/neighbours/manager: ")
 change('"output":', '"neighbours": {@"manger": "boxes"}, "output":', "/neighbours/manger: ",
        '(did you mean "manager"?)')

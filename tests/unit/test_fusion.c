@@ -299,13 +299,20 @@ static void parameters(const char *text, double alpha, double beta, double gain)
 static void parameters_of_parts(void **state)
 {
     (void)state;
-    with_all = false; /* no more parts than the recipe has steps */
     parameters(ONE("{'name':'plain','alpha':5,'beta':6,'gain':7}"), 5, 6, 7);
     parameters(ONE("{'name':'plain','edit':[{'replace':'left','with':'left','alpha':3}]}"), 3, 1,
                1);
     parameters(ONE("{'name':'plain','alpha':5,'beta':6,'edit':[{'replace':'right','with':'right',"
                    "'beta':4}]}"),
                5, 4, 1);
+    /* ... the scene's word for all steps, too, gives way to it, whichever part it was given. */
+    parameters(ONE("{'name':'plain','alpha':5,'beta':6,'edit':[{'replace':'left','with':'left',"
+                   "'alpha':4}]}"),
+               4, 6, 1);
+    /* The last step, of a function that would want another behind it. */
+    PASSES(ONE("{'name':'plain','edit':[{'delete':'left'},{'replace':'right','with':'left',"
+               "'alpha':4}]}"),
+           "left(a)");
     PASSES(ONE("{'name':'plain','edit':[{'replace':'left','with':'left','gain':3}]}"), "left(a)",
            "right(a)");
     PASSES(ONE("{'name':'plain','edit':[{'replace':'right','with':'right','gain':3}]}"), "left(a)",

@@ -151,6 +151,18 @@ change('"exact": "riemann"', '"exact": "rieman"', '"rieman"', '(did you mean "ri
 change('"where": "r > 0.1"', '"where": @"r >"', '/compare/0/where: "r >": the expression ends too early')
 change('"array": "fluid", "mean"', '"array": @"fluit", "mean"', 'unknown array "fluit" (did you mean "fluid"?)')
 change('"mean": "rho"', '"mean": "roh"', "/probes/0", '"roh"', '(did you mean "rho"?)')
+# Of neighbours and precision.
+for word, hint in (("mixt", '(did you mean "mixed"?)'), ("Mixed", '(did you mean "mixed"?)'), ("Single", "single"),
+                   ("quadruple-precise", "double, mixed, single"), ("", "the text is empty")):
+    change('"output":', f'"precision": @"{word}", "output":', "/precision: ", hint)
+change('"output":', '"precision": @32, "output":', "/precision: ")
+change('"output":', '"neighbours": {"manager": @"boxs"}, "output":', "/neighbours/manager: ", '"boxs"',
+       '(did you mean "boxes"?)')
+change('"output":', '"neighbours": {"manager": @"tree"}, "output":', "/neighbours/manager: ", '"tree"')
+change('"output":', '"neighbours": {"manager": @3}, "output":', "/neighbours/manager: ")
+change('"output":', '"neighbours": {@"manger": "boxes"}, "output":', "/neighbours/manger: ",
+       '(did you mean "manager"?)')
+change('"name": "gsph"', '"name": "gsph", "fuse": @"no"', "/scheme/fuse: ")
 change('"every": 0.005', '"every": @0', "/output/every: 0 is not a time interval")
 change('"every": 0.005', '@"checkpoint": {"steps": 10}', "checkpoints are not available in this version")
 change('"output":', '"boundaries": [{"name": "wall"}], "output":', "/boundaries/0", '"wall"')
@@ -196,6 +208,12 @@ case("threads in words", ["run", "scene.json", "--threads=two"], USAGE, "threads
 case("negative steps", ["run", "scene.json", "--steps=-1"], USAGE, "steps", "-1", scene=base)
 case("until before begin", ["run", "scene.json", "--until=-1"], USAGE, "-1", "begin", scene=base)
 case("until NaN", ["run", "scene.json", "--until=nan"], USAGE, "nan", scene=base)
+for command in ("run", "check", "plan"):
+    case(f"{command} with a precision unknown", [command, "scene.json", "--precision=mixt"], USAGE, "--precision",
+         "mixt", "double", "mixed", "single", scene=base)
+case("path unknown", ["run", "scene.json", "--path=avx513"], USAGE, "--path", '"avx513"', "best, reference",
+     scene=base)
+case("path empty", ["run", "scene.json", "--path="], USAGE, "--path", scene=base)
 case("no such device", ["run", "scene.json", "--device=abacus"], USAGE, "abacus", scene=base)
 case("set without a value", ["run", "scene.json", "--set", "time.end"], USAGE,
      "--set time.end: give PATH=VALUE", scene=base)

@@ -237,7 +237,9 @@ block_change(const struct skin *s, size_t at, const struct cloud *c, double rela
     double x[3][BLOCK], h[BLOCK], most = 0, room = INFINITY, none = 0;
 
     block_decode(s, at, x, h);
+#ifndef __clang__ /* which says that it cannot, and would do so as a warning */
 #pragma omp simd reduction(max : most) reduction(min : room) reduction(+ : none)
+#endif
     for (size_t k = 0; k < n; k++) {
         double r2 = 0, left;
 

@@ -59,8 +59,9 @@ int bind_columns(struct plan *plan, struct binding *b, size_t array, const sph_i
 }
 
 /* The parameters of a use: the scheme's members that it declares, then its boundary condition's, then
- * the step's own. */
-static int configure(struct plan *plan, struct use *use, const struct step *s, struct error *e)
+ * those of its own steps (more than one where a function stands for several). */
+static int configure(struct plan *plan, struct use *use, const struct step *s, size_t parts,
+                     struct error *e)
 {
     const struct document *d = plan->scene->doc;
     const cJSON *member;
@@ -74,7 +75,10 @@ static int configure(struct plan *plan, struct use *use, const struct step *s, s
         if (use_declares(use, member->string) && use_set(use, d, member, e))
             return -1;
     }
-    return use_set_all(use, d, s->params, e);
+    for (size_t k = 0; k < parts; k++)
+        if (use_set_all(use, d, s[k].params, e))
+            return -1;
+    return 0;
 }
 
 /* What the plugin, or a parameter that is missing, has against it, with the place that asks for it. */
@@ -210,7 +214,30 @@ static int find_frame(struct plan *plan, const struct pass *p, const struct step
     if (!bigger)
         return error_memory(e, "the plan", sizeof *bigger);
     plan->frame = bigger;
-    plan->frame[*frame] = (struct frame){over, p->function->frozen != 0};
+    plan->frame[*frame] = (struct frame){over, p->function->frozen != 0, NULL, NULL};
+    return plan->frame[*frame].frozen &&
+                   (plan_name(&plan->frame[*frame].kept, e, "%s.frozen", over) ||
+                    plan_name(&plan->frame[*frame].kept_h, e, "%s.frozen-h", over))
+               ? -1
+               : 0;
+}
+
+/* The columns that a frame looks for neighbours in outlive sorts, and so do the copies of a frozen one. */
+static int frame_columns(struct plan *plan, size_t frame, size_t array, struct error *e)
+{
+    struct particles *p = &plan->array[array].p;
+    const struct frame *f = &plan->frame[frame];
+    const int over = particles_find(p, f->name);
+    if (frame == 0 || over < 0)
+        return 0;
+    p->column[over].state = true;
+    if (!f->frozen)
+        return 0;
+    const int x = particles_add(p, f->kept, "m", "where neighbours were found", SPH_VECTOR, e);
+    const int h = x < 0 ? -1 : particles_add(p, f->kept_h, "m", "likewise", SPH_SCALAR, e);
+    if (x < 0 || h < 0)
+        return -1;
+    p->column[x].state = p->column[h].state = true;
     return 0;
 }
 
@@ -245,7 +272,8 @@ static int bind_sources(struct plan *plan, struct pass *p, const struct step *s,
         if (!listed(s->from, s->n_from, plan->array[a].p.name))
             continue;
         if (bind_columns(plan, &p->src[p->n_src], a, p->use.item, SPH_SRC_READ, e) ||
-            find_list(plan, p, a, &p->list[p->n_src], e))
+            find_list(plan, p, a, &p->list[p->n_src], e) || frame_columns(plan, p->frame, a, e) ||
+            frame_columns(plan, p->frame, p->dst.array, e))
             return -1;
         p->n_src++;
     }
@@ -288,11 +316,9 @@ static int bind_function(struct plan *plan, const struct step *s, size_t parts,
     if (parts > 1)
         whole.name = (char *)(uintptr_t)f->item->name;
     struct pass *p = new_pass(plan, &whole, array, e);
-    if (!p || use_init(&p->use, entry, f->item, f->life, e))
+    if (!p || use_init(&p->use, entry, f->item, f->life, e) ||
+        configure(plan, &p->use, s, parts, e))
         return -1;
-    for (size_t k = 0; k < parts; k++)
-        if (configure(plan, &p->use, s + k, e))
-            return -1;
     if (create(plan, &p->use, s->node ? s->node : plan->scene->scheme.node, e))
         return -1;
     p->function = f;
@@ -377,7 +403,7 @@ int bind_passes(struct plan *plan, struct error *e)
     plan->frame = plan_grow(NULL, &plan->n_frame, sizeof *plan->frame);
     if (!plan->frame)
         return error_memory(e, "the plan", sizeof *plan->frame);
-    plan->frame[0] = (struct frame){"x", false};
+    plan->frame[0] = (struct frame){"x", false, NULL, NULL};
     plan->reach_scale = 0.0;
     for (size_t i = 0, n; i < plan->n_step; i += n) {
         n = bind_step(plan, i, e);
@@ -423,6 +449,10 @@ void bind_free(struct plan *plan)
     }
     free(plan->pass);
     free(plan->reduction);
+    for (size_t i = 0; i < plan->n_frame; i++) {
+        free(plan->frame[i].kept);
+        free(plan->frame[i].kept_h);
+    }
     free(plan->frame);
     free(plan->list);
 }

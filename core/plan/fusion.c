@@ -40,12 +40,13 @@ static bool own_params(const struct plan *plan, size_t first, size_t n, size_t p
 static bool fits(const struct plan *plan, size_t first, const struct entry *whole)
 {
     const struct step *s = &plan->step[first];
+    if (whole->n_part > plan->n_step - first)
+        return false;
     for (size_t k = 0; k < whole->n_part; k++) {
         const struct step *q = s + k;
-        if (first + k >= plan->n_step || q->kind != KIND_FUNCTION || q->expression ||
-            q->operation || q->of || strcmp(q->name, whole->part[k]) != 0 ||
-            q->moment != s->moment || q->shared != s->shared ||
-            !same_names(q->to, q->n_to, s->to, s->n_to) ||
+        if (q->kind != KIND_FUNCTION || q->expression || q->operation || q->of ||
+            strcmp(q->name, whole->part[k]) != 0 || q->moment != s->moment ||
+            q->shared != s->shared || !same_names(q->to, q->n_to, s->to, s->n_to) ||
             !same_names(q->from, q->n_from, s->from, s->n_from) ||
             !own_params(plan, first, whole->n_part, k))
             return false;

@@ -65,6 +65,24 @@ static int find_integrator(struct plan *plan, struct error *e)
                          text_suggest(near, sizeof near, name, known, n));
 }
 
+static int find_manager(struct plan *plan, struct error *e)
+{
+    const struct scene *s = plan->scene;
+    const char *name[16];
+    char near[256];
+    size_t n = 0;
+    if (!s->neighbours.manager)
+        return 0;
+    plan->manager = neighbour_manager_find(s->neighbours.manager);
+    for (; n < 16 && neighbour_manager_at(n); n++)
+        name[n] = neighbour_manager_at(n)->name;
+    if (plan->manager)
+        return 0;
+    return document_fail(s->doc, json_get(s->neighbours.node, "manager"), e,
+                         "there is no neighbour manager \"%s\"%s", s->neighbours.manager,
+                         text_suggest(near, sizeof near, s->neighbours.manager, name, n));
+}
+
 /* A scheme's member that no step declares is a slip of the pen. */
 static int check_scheme_members(const struct plan *plan, struct error *e)
 {
@@ -187,9 +205,10 @@ int plan_make(struct plan *plan, struct registry *r, const struct scene *s, bool
 {
     *plan = (struct plan){.registry = r, .scene = s, .dim = s->dim};
     if (find_scheme(plan, e) || find_kernel(plan, e) || find_integrator(plan, e) ||
-        recipe_make(plan, e) || columns_begin(plan, guarded, e) || bind_passes(plan, e) ||
-        check_scheme_members(plan, e) || check_boundaries(plan, e) || columns_finish(plan, e) ||
-        precision_finish(plan, e) || bind_exact(plan, e) || check_reports(plan, e))
+        find_manager(plan, e) || recipe_make(plan, e) || columns_begin(plan, guarded, e) ||
+        bind_passes(plan, e) || check_scheme_members(plan, e) || check_boundaries(plan, e) ||
+        columns_finish(plan, e) || precision_finish(plan, e) || bind_exact(plan, e) ||
+        check_reports(plan, e))
         return -1;
     return 0;
 }

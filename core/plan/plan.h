@@ -4,6 +4,7 @@
 #define PLAN_PLAN_H
 
 #include "integrators/integrator.h"
+#include "neighbours/neighbours.h"
 #include "particles/particles.h"
 #include "registry/registry.h"
 #include "scene/scene.h"
@@ -38,10 +39,12 @@ struct step {
     const char *expression;     /* assigned to `of`; NULL: a function */
 };
 
-/* Whose places neighbours are looked for in: the position's, or another column's. */
+/* Whose places neighbours are looked for in: the position's, or another column's. What is found once
+ * is found in copies of the places and of h, "X.frozen" and "X.frozen-h", which sorts carry along. */
 struct frame {
-    const char *name; /* of the column; frame 0 is "x" */
-    bool frozen;      /* found once */
+    const char *name;    /* of the column; frame 0 is "x" */
+    bool frozen;         /* found once */
+    char *kept, *kept_h; /* of the copies; NULL: none */
 };
 
 /* Sources of one array for the destinations of another, that some pass asks for. */
@@ -143,9 +146,10 @@ struct plan {
     struct plan_list *list;
     size_t n_list;
     enum precision precision;
-    double reach_scale; /* largest over the functions */
-    struct use *exact;  /* of scene.compare, one each */
-    int64_t next_id;    /* of a particle yet to be made */
+    const struct neighbour_manager *manager; /* NULL: as it suits */
+    double reach_scale;                      /* largest over the functions */
+    struct use *exact;                       /* of scene.compare, one each */
+    int64_t next_id;                         /* of a particle yet to be made */
 };
 
 /* Resolves every name, checks every parameter, adds every column. guarded: for the audit. Particles are

@@ -20,11 +20,19 @@ static double *plane_of(const struct plan_array *a, int column, int c)
     return (double *)x->data + (size_t)c * x->plane;
 }
 
-/* The column of a frame's places in an array, or -1. */
+/* The columns in which a frame's neighbours are looked for: places, and h. */
 static int place_in(const struct run *r, size_t frame, size_t array)
 {
     const struct plan_array *a = &r->plan->array[array];
-    return frame == 0 ? a->position : particles_find(&a->p, r->plan->frame[frame].name);
+    const struct frame *f = &r->plan->frame[frame];
+    return frame == 0 ? a->position : particles_find(&a->p, f->frozen ? f->kept : f->name);
+}
+
+static int reach_in(const struct run *r, size_t frame, size_t array)
+{
+    const struct plan_array *a = &r->plan->array[array];
+    const struct frame *f = &r->plan->frame[frame];
+    return f->frozen ? particles_find(&a->p, f->kept_h) : a->smoothing;
 }
 
 /* Does any list of this frame have this array? */
@@ -45,7 +53,7 @@ static struct cloud cloud_of(const struct run *r, size_t array, size_t frame, bo
     const struct plan_array *a = &r->plan->array[array];
     struct cloud cloud = {.dim = r->plan->dim, .scale = support(r->plan)};
     cloud.n = a->p.n + (ghosts ? a->p.n_ghost : 0);
-    cloud.h = a->p.column[a->smoothing].data;
+    cloud.h = a->p.column[reach_in(r, frame, array)].data;
     for (int c = 0; c < r->plan->dim; c++)
         cloud.x[c] = plane_of(a, place_in(r, frame, array), c);
     return cloud;
@@ -61,16 +69,10 @@ static size_t clouds_of(const struct run *r, size_t frame, struct cloud *cloud)
     return n;
 }
 
-static bool still_right(const struct run *r)
+static bool holds(const struct run *r, size_t frame)
 {
-    bool right = r->lists_made;
-    for (size_t f = 0; right && f < r->plan->n_frame; f++) {
-        if (r->plan->frame[f].frozen)
-            continue;
-        const size_t n = clouds_of(r, f, r->cloud);
-        right = skin_holds(r->kept + f * r->plan->n_array, r->cloud, n, r->skin, r->threads);
-    }
-    return right;
+    const size_t n = clouds_of(r, frame, r->cloud);
+    return skin_holds(r->kept + frame * r->plan->n_array, r->cloud, n, r->skin, r->threads);
 }
 
 static int keep_places(struct run *r, size_t frame, struct error *e)
@@ -166,30 +168,68 @@ static int make_list(struct run *r, size_t k, bool counted, struct error *e)
     const struct cloud dst = cloud_of(r, l->dst, l->frame, false);
     const struct cloud src = cloud_of(r, l->src, l->frame, true);
     struct group_list *list = &r->list[k];
-    if (group_list_make(list, &dst, &src, l->reach == SPH_SYMMETRIC, r->skin, r->manager,
+    if (group_list_make(list, &dst, &src, l->reach == SPH_SYMMETRIC, r->skin, r->plan->manager,
                         r->threads, e))
         return error_prefix(e, "neighbours of \"%s\"", r->plan->array[l->dst].p.name);
     if (counted && list->n_entry)
-        list->true_share =
-            (double)group_list_count(list, &dst, &src, r->threads) / (double)list->n_entry;
+        list->true_share = ((double)group_list_count(list, &dst, &src, r->threads) -
+                            (l->dst == l->src ? (double)dst.n : 0.0)) /
+                           (double)list->n_entry; /* a particle is no pair with itself */
     return 0;
 }
 
-/* All lists anew, but for frozen ones whose particles stand as they stood. */
+/* All lists of a frame. */
+static int make_frame(struct run *r, size_t frame, bool counted, struct error *e)
+{
+    for (size_t k = 0; k < r->plan->n_list; k++)
+        if (r->plan->list[k].frame == frame && make_list(r, k, counted, e))
+            return -1;
+    return keep_places(r, frame, e);
+}
+
+/* Those of positions. The others are made when a pass asks for them: at the start their places may be
+ * yet to be set. They stay right while the particles stand as they stood. */
 static int make_lists(struct run *r, bool sorted, struct error *e)
 {
     find_range_of_h(r);
     if (make_ghosts(r, e))
         return -1;
-    for (size_t k = 0; k < r->plan->n_list; k++) {
-        const bool kept = r->lists_made && !sorted && r->plan->frame[r->plan->list[k].frame].frozen;
-        if (!kept && make_list(r, k, sorted, e))
-            return -1;
+    if (sorted || !r->lists_made)
+        memset(r->frame_made, false, r->plan->n_frame);
+    return make_frame(r, 0, sorted, e);
+}
+
+/* Copies of what neighbours will be looked for in from now on. */
+static void freeze(struct run *r, size_t frame)
+{
+    for (size_t a = 0; a < r->plan->n_array; a++) {
+        const struct particles *p = &r->plan->array[a].p;
+        if (!in_frame(r, frame, a))
+            continue;
+        const struct column *from = &p->column[particles_find(p, r->plan->frame[frame].name)];
+        const struct column *to = &p->column[place_in(r, frame, a)];
+        for (uint32_t c = 0; c < from->ncomp; c++)
+            for (size_t i = 0; i < p->n; i++)
+                column_set(to, c, i, column_get(from, c, i));
+        memcpy(p->column[reach_in(r, frame, a)].data, p->column[r->plan->array[a].smoothing].data,
+               p->n * sizeof(double));
     }
-    for (size_t f = 0; f < r->plan->n_frame; f++)
-        if (keep_places(r, f, e))
-            return -1;
-    return 0;
+    r->frozen[frame] = true;
+}
+
+int run_frame(struct run *r, size_t frame, struct error *e)
+{
+    const bool frozen = r->plan->frame[frame].frozen;
+    const double begin = omp_get_wtime();
+    if (frame == 0 || (r->frame_made[frame] && (frozen || holds(r, frame))))
+        return 0;
+    if (frozen && !r->frozen[frame])
+        freeze(r, frame);
+    const int status = make_frame(r, frame, true, e);
+    r->frame_made[frame] = !status;
+    r->cost.list_builds++;
+    r->cost.neighbour += omp_get_wtime() - begin;
+    return status;
 }
 
 int run_lists(struct run *r, bool within, struct error *e)
@@ -201,7 +241,7 @@ int run_lists(struct run *r, bool within, struct error *e)
     }
     double begin = omp_get_wtime();
     int status = 0;
-    if (!still_right(r)) {
+    if (!r->lists_made || !holds(r, 0)) {
         bool sort = !within && (!r->lists_made || ++r->builds_since_sort >= BUILDS_PER_SORT);
         if (!within) {
             for (size_t a = 0; a < r->plan->n_array; a++)

@@ -225,13 +225,16 @@ static int after_step(struct loop *l, struct error *e)
     struct run *r = &l->run;
     bool last = finished(l);
     bool by_time = r->time >= l->next_log;
-    watch(l);
+    const bool logged = last || is_logged(l, r->step, r->time);
+    /* Sums over all particles: where they are written. Rates are looked at in every evaluation. */
+    if (logged)
+        watch(l);
     if (!isfinite(energy(&l->last)) && finite_trace(r, e))
         return -1;
     if (!isfinite(energy(&l->last)))
         return error_set(e, EXIT_RUN, "the energy is no longer a number at step %llu, t = %g",
                          (unsigned long long)r->step, r->time);
-    if ((last || is_logged(l, r->step, r->time)) && write_log(l, e))
+    if (logged && write_log(l, e))
         return -1;
     while (by_time && l->next_log <= r->time)
         l->next_log += l->scene->output.log_every;

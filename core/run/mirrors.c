@@ -68,7 +68,10 @@ int run_mirror_frame(struct run *r, struct error *e)
     r->quantum = longest > 0.0 ? longest / 2147483648.0 : 1.0;
     for (size_t a = 0; a < plan->n_array; a++)
         r->mirror_old[a][plan->array[a].position] = true;
-    if (plan->precision != PRECISION_DOUBLE && h > 0.0 && r->quantum > COARSEST * h)
+    bool floats = false;
+    for (size_t i = 0; i < plan->n_pass; i++)
+        floats = floats || plan->pass[i].real == SPH_F32;
+    if (floats && h > 0.0 && r->quantum > COARSEST * h)
         return error_set(e, EXIT_RUN,
                          "precision \"%s\" cannot tell neighbours apart: the domain is %.3g times "
                          "the smallest smoothing length wide; take \"double\"",

@@ -109,10 +109,8 @@ static void mark_written(struct run *r, const struct pass *p)
         if (c < 0 || !pass_writes(p, p->dst.array, c))
             continue;
         run_changed(r, p->dst.array, c);
-        bool place = c == a->smoothing || c == a->position;
-        for (size_t f = 1; f < r->plan->n_frame; f++)
-            place = place || strcmp(a->p.column[c].name, r->plan->frame[f].name) == 0;
-        r->lists_suspect = r->lists_suspect || place;
+        if (c == a->smoothing || c == a->position)
+            r->lists_suspect = true;
     }
 }
 
@@ -120,7 +118,7 @@ static int sweep(struct run *r, struct pass *p, const struct ranges *ranges, str
 {
     if (p->shape == SPH_PAIR && r->lists_suspect && run_lists(r, true, e))
         return -1;
-    if (p->shape == SPH_PAIR && refresh_all(r, p, e))
+    if (p->shape == SPH_PAIR && (run_frame(r, p->frame, e) || refresh_all(r, p, e)))
         return -1;
     audit_begin(r, p);
     int status = chunks_run(r, p, ranges, e);

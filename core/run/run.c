@@ -1,7 +1,5 @@
 /* run/run.c -- makes and frees a run's working memory. */
 #include "run/run.h"
-#include "base/text.h"
-#include "scene/json.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -61,24 +59,6 @@ static bool changes_h(const struct plan *plan)
     return false;
 }
 
-static int find_manager(struct run *r, struct error *e)
-{
-    const struct scene *s = r->plan->scene;
-    const char *name[16];
-    char near[256];
-    size_t n = 0;
-    if (!s->neighbours.manager)
-        return 0;
-    r->manager = neighbour_manager_find(s->neighbours.manager);
-    for (; n < 16 && neighbour_manager_at(n); n++)
-        name[n] = neighbour_manager_at(n)->name;
-    if (r->manager)
-        return 0;
-    return document_fail(s->doc, json_get(s->neighbours.node, "manager"), e,
-                         "there is no neighbour manager \"%s\"%s", s->neighbours.manager,
-                         text_suggest(near, sizeof near, s->neighbours.manager, name, n));
-}
-
 int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool audit,
              struct error *e)
 {
@@ -93,13 +73,15 @@ int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool 
     r->list = calloc(plan->n_list + 1, sizeof *r->list);
     r->kept = calloc(n * plan->n_frame + 1, sizeof *r->kept);
     r->cloud = calloc(n + 1, sizeof *r->cloud);
+    r->frame_made = calloc(plan->n_frame + 1, sizeof *r->frame_made);
+    r->frozen = calloc(plan->n_frame + 1, sizeof *r->frozen);
     r->stale = calloc(n + 1, sizeof *r->stale);
     r->mirror_old = calloc(n + 1, sizeof *r->mirror_old);
     r->h_low = calloc(2 * n + 1, sizeof *r->h_low);
     r->h_high = r->h_low + n;
     r->reduced = calloc(plan->n_reduction + 1, sizeof *r->reduced);
-    if (!r->ghosts || !r->list || !r->kept || !r->cloud || !r->stale || !r->mirror_old ||
-        !r->h_low || !r->reduced)
+    if (!r->ghosts || !r->list || !r->kept || !r->cloud || !r->frame_made || !r->frozen ||
+        !r->stale || !r->mirror_old || !r->h_low || !r->reduced)
         return error_memory(e, "the run", n * n * sizeof *r->list);
     for (size_t i = 0; i < plan->n_reduction; i++)
         r->reduced[i] = NAN;
@@ -111,7 +93,7 @@ int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool 
             return error_memory(e, "the run", columns);
         memset(r->mirror_old[a], true, columns);
     }
-    if (hold(plan, e) || find_manager(r, e))
+    if (hold(plan, e))
         return -1;
     return audit ? audit_open(r, e) : 0;
 }
@@ -136,6 +118,8 @@ void run_free(struct run *r)
     free(r->list);
     free(r->kept);
     free(r->cloud);
+    free(r->frame_made);
+    free(r->frozen);
     free(r->stale);
     free(r->mirror_old);
     free(r->h_low);

@@ -30,16 +30,17 @@ struct run {
     int threads;
     uint32_t path; /* how pair loops run: SPH_PATH_... */
     double skin;
-    const struct neighbour_manager *manager; /* NULL: as it suits */
-    double time, dt, dt_bound;               /* dt_bound: what the reductions allow, before cfl */
+    double time, dt, dt_bound; /* dt_bound: what the reductions allow, before cfl */
     uint64_t step;
     /* lists.c */
     struct ghosts *ghosts;   /* [array] */
     struct group_list *list; /* [plan->n_list] */
     struct skin *kept; /* [frame * n_array + k]: of the frame's k-th array, when lists were made */
-    struct cloud *cloud;       /* [array]: room for clouds */
-    bool **stale;              /* [array][column]: ghosts hold old values */
-    bool **mirror_old;         /* [array][column]: the mirror does */
+    struct cloud *cloud; /* [array]: room for clouds */
+    bool *frame_made;    /* [frame]: the lists of frames but 0 are made when a pass asks for them */
+    bool *frozen;        /* [frame]: the copies of a frozen one are made */
+    bool **stale;        /* [array][column]: ghosts hold old values */
+    bool **mirror_old;   /* [array][column]: the mirror does */
     double centre[3], quantum; /* of positions' mirrors: x = centre + quantum * a whole number */
     bool h_fixed;              /* no pass and no rate changes any h */
     double *h_low, *h_high;    /* [array]: range of h when the lists were made, ghosts included */
@@ -62,6 +63,8 @@ void run_free(struct run *r);
  * right. In its midst (`within`): only ghosts and lists, since other columns hold results
  * already. */
 int run_lists(struct run *r, bool within, struct error *e);
+/* The lists of another frame than that of positions are there, and right. */
+int run_frame(struct run *r, size_t frame, struct error *e);
 /* Ghosts of this column get their parents' values, if they hold old ones. */
 void run_refresh(struct run *r, size_t array, int column);
 /* A column was written: what copies it is old. */

@@ -102,7 +102,8 @@ SPH_INLINE R SPH_OF_ISA(sph_load_)(const T *p)
 /* p[k[0]], p[k[1]]: what the loop over lists has in its lanes. */
 SPH_INLINE R SPH_OF_ISA(sph_gather_)(const T *p, const uint32_t *k)
 {
-    return (R){p[k[0]], p[k[1]]};
+    const R out = {p[k[0]], p[k[1]]};
+    return out;
 }
 #endif
 

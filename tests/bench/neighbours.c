@@ -8,7 +8,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "clouds.h"
+#include "../unit/clouds.h"
 #include "neighbours/skin.h"
 
 #include <stdio.h>

@@ -148,6 +148,45 @@ static void parameters(void **state)
     ALL_REFUSED(slips);
 }
 
+/* What a sweep works in, and the places of its neighbours. */
+static void loops(void **state)
+{
+    static const struct slip slips[] = {
+        {KIND_FUNCTION, "reals is 4, which this sph does not know", NUMBER(mock.function.reals, 4)},
+        {KIND_FUNCTION, "reals is 4294967295", NUMBER(mock.function.reals, ~0u)},
+        {KIND_FUNCTION, "frozen is 1, but over names no property", NUMBER(mock.function.frozen, 1)},
+        {KIND_FUNCTION, "frozen is 2, neither 0 nor 1", NUMBER(mock.function.frozen, 2),
+         TEXT(mock.function.over, "rho")},
+        {KIND_FUNCTION, "over is \"X\", which is not declared as a vector",
+         TEXT(mock.function.over, "X")},
+        {KIND_FUNCTION, "over is \"rho\", which is not declared as a vector",
+         TEXT(mock.function.over, "rho")},
+        {KIND_FUNCTION, "over is \"?\"", TEXT(mock.function.over, "two words\n")},
+        {KIND_FUNCTION, "over is \"?\"", TEXT(mock.function.over, "")},
+        {KIND_FUNCTION, "read of destinations and sources", TEXT(mock.function.over, "rho"),
+         NUMBER(mock.prop[0].type, SPH_VECTOR)},
+        {KIND_FUNCTION, "over is set, but a point function has no neighbours",
+         TEXT(mock.function.over, "rho"), NUMBER(mock.function.shape, SPH_POINT)},
+    };
+
+    (void)state;
+    ALL_REFUSED(slips);
+    /* A vector that is read on one side only; on both, it will do. */
+    const uint32_t access[] = {SPH_DST_READ, SPH_SRC_READ, SPH_DST_WRITE | SPH_SRC_READ,
+                               SPH_DST_READ | SPH_SRC_READ};
+    for (int k = 0; k < 4; k++) {
+        mock_reset(KIND_FUNCTION);
+        mock.function.over = "rho";
+        mock.function.frozen = k % 2 ? 1 : 0;
+        mock.function.reals = SPH_F64 | SPH_F32;
+        mock.function.reductions = (sph_list)SPH_NO_LIST; /* rho is theirs, and a scalar */
+        mock.prop[0].type = SPH_VECTOR;
+        mock.prop[0].access = access[k];
+        const char *why = mock_refusal();
+        assert_true(k < 3 ? why && strstr(why, "read of destinations and sources") : !why);
+    }
+}
+
 static void device_bodies(void **state)
 {
     static char endless[(1u << 20) + 1];
@@ -438,6 +477,7 @@ int main(void)
         cmocka_unit_test(properties),
         cmocka_unit_test(parameters),
         cmocka_unit_test(functions),
+        cmocka_unit_test(loops),
         cmocka_unit_test(device_bodies),
         cmocka_unit_test(kernels),
         cmocka_unit_test(recipes),

@@ -14,7 +14,7 @@ static bool takes_floats(const struct pass *p)
 }
 
 /* What a pair pass touches, in either role. */
-static void mark(struct plan *plan, const struct pass *p, bool **touched)
+static void mark(const struct pass *p, bool **touched)
 {
     for (uint32_t k = 0; k < p->use.item->props.count; k++) {
         if (p->dst.column[k] >= 0)
@@ -23,7 +23,6 @@ static void mark(struct plan *plan, const struct pass *p, bool **touched)
             if (p->src[s].column[k] >= 0)
                 touched[p->src[s].array][p->src[s].column[k]] = true;
     }
-    (void)plan;
 }
 
 static void mark_geometry(const struct plan *plan, const struct pass *p, bool **touched)
@@ -43,7 +42,7 @@ static void keep_doubles(struct plan *plan, bool **doubles)
         const struct pass *p = &plan->pass[i];
         const sph_population *d = p->use.entry ? p->use.entry->population : NULL;
         if (p->shape == SPH_PAIR && p->real == SPH_F64)
-            mark(plan, p, doubles);
+            mark(p, doubles);
         for (uint32_t k = 0; d && k < d->born_props.count; k++) {
             const sph_prop *prop = list_at(&d->born_props, k);
             doubles[p->dst.array][particles_find(&plan->array[p->dst.array].p, prop->name)] = true;
@@ -102,7 +101,7 @@ int precision_finish(struct plan *plan, struct error *e)
         p->real = plan->precision != PRECISION_DOUBLE && takes_floats(p) ? SPH_F32 : SPH_F64;
         if (p->real == SPH_F64)
             continue;
-        mark(plan, p, floats);
+        mark(p, floats);
         mark_geometry(plan, p, floats);
     }
     if (!status)

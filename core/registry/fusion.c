@@ -36,6 +36,46 @@ static int check_part_params(const sph_item *whole, const sph_item *part, struct
             return error_set(e, EXIT_REFUSED,
                              "\"%s\" does not declare the parameter \"%s\" of its part \"%s\"",
                              whole->name, p[i].name, part->name);
+        if (own[k].type != p[i].type || own[k].def < p[i].def || own[k].def > p[i].def)
+            return error_set(e, EXIT_REFUSED,
+                             "the parameter \"%s\" of \"%s\" has another type or default than that "
+                             "of its part \"%s\"",
+                             p[i].name, whole->name, part->name);
+    }
+    return 0;
+}
+
+/* What the host does with the columns: advances them, reduces them. */
+static int check_part_duties(const sph_function *whole, const sph_function *part, struct error *e)
+{
+    const sph_rate *rate = part->rates.data, *own_rate = whole->rates.data;
+    const sph_reduction *sum = part->reductions.data, *own_sum = whole->reductions.data;
+
+    if (part->item->dims & ~whole->item->dims)
+        return error_set(e, EXIT_REFUSED, "\"%s\" is for fewer dimensions than its part \"%s\"",
+                         whole->item->name, part->item->name);
+    for (uint32_t i = 0; i < part->rates.count; i++) {
+        uint32_t k = 0;
+        while (k < whole->rates.count && (strcmp(own_rate[k].property, rate[i].property) != 0 ||
+                                          strcmp(own_rate[k].rate, rate[i].rate) != 0))
+            k++;
+        if (k == whole->rates.count)
+            return error_set(e, EXIT_REFUSED,
+                             "\"%s\" does not declare \"%s\" as the rate of \"%s\", as its part "
+                             "\"%s\" does",
+                             whole->item->name, rate[i].rate, rate[i].property, part->item->name);
+    }
+    for (uint32_t i = 0; i < part->reductions.count; i++) {
+        uint32_t k = 0;
+        while (k < whole->reductions.count &&
+               (strcmp(own_sum[k].name, sum[i].name) != 0 ||
+                strcmp(own_sum[k].property, sum[i].property) != 0 || own_sum[k].op != sum[i].op ||
+                own_sum[k].use != sum[i].use))
+            k++;
+        if (k == whole->reductions.count)
+            return error_set(e, EXIT_REFUSED,
+                             "\"%s\" does not declare the reduction \"%s\" as its part \"%s\" does",
+                             whole->item->name, sum[i].name, part->item->name);
     }
     return 0;
 }
@@ -55,9 +95,11 @@ static int check_part(const sph_function *whole, const sph_function *part, struc
                          "\"%s\" is no pair function of the same reach in one sweep and without "
                          "prepare and life, so it cannot be a part of \"%s\"",
                          part->item->name, whole->item->name);
-    return check_part_props(whole->item, part->item, e)
+    return check_part_props(whole->item, part->item, e) ||
+                   check_part_params(whole->item, part->item, e) ||
+                   check_part_duties(whole, part, e)
                ? -1
-               : check_part_params(whole->item, part->item, e);
+               : 0;
 }
 
 int fusion_declare(struct registry *r, const sph_fusion *in, struct error *e)

@@ -35,7 +35,7 @@ static double energy(const struct totals *t)
     return t->kinetic + t->internal + t->potential;
 }
 
-/* Drifts are the largest since the start: energy relative to the first total (or its parts, where they cancel);
+/* Drifts are the largest over the logged steps: energy relative to the first total (or its parts, where they cancel);
  * momentum relative to sum m |v|. */
 static void watch(struct loop *l)
 {

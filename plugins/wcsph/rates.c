@@ -43,10 +43,7 @@ static const sph_rate rates[] = {
     SPH_RATE("v", "a", SPH_KICK),
 };
 
-static const sph_reduction reductions[] = {
-    SPH_REDUCTION("dt", "dt", SPH_REDUCE_MIN, SPH_USE_TIME_STEP),
-    SPH_REDUCTION("rho_max", "rho", SPH_REDUCE_MAX, SPH_USE_NONE),
-};
+static const sph_reduction reductions[] = {WCSPH_REDUCTIONS};
 
 static const sph_item item = {
     .size = SIZE(sph_item),

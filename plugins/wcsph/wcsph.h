@@ -36,6 +36,10 @@ sph_status wcsph_finish(const sph_batch *b, const struct wcsph_finish *at);
     SPH_PROP("dt", "s", "time step that the particle allows, before cfl", SPH_SCALAR,              \
              SPH_DST_WRITE, 0.0)
 
+#define WCSPH_REDUCTIONS                                                                           \
+    SPH_REDUCTION("dt", "dt", SPH_REDUCE_MIN, SPH_USE_TIME_STEP),                                  \
+        SPH_REDUCTION("rho_max", "rho", SPH_REDUCE_MAX, SPH_USE_NONE)
+
 #define SIZE(type) (uint32_t)sizeof(type)
 
 #endif

@@ -20,7 +20,7 @@ SPH_BEGIN_DECLS
 #define SPH_PATH_BASE 3u      /* with what every processor of the architecture has */
 #define SPH_PATH_AVX2 4u      /* on x86-64, if the processor has it */
 #define SPH_PATH_AVX512 5u
-/* x = SPH_PATH_ANY_KERNEL + path: and no kernel is compiled in */
+/* Added to one of them: with the loops for any kernel, not those for single ones. */
 #define SPH_PATH_ANY_KERNEL 16u
 #define SPH_LANES 8u /* destinations in a group */
 

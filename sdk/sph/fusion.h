@@ -15,7 +15,8 @@ typedef struct sph_fusion {
     uint32_t size, reserved;
     const char *function; /* a registered pair function of this plugin: the parts in one sweep. It
                            * declares what they do: each of their properties with all their
-                           * accesses, each of their parameters, the same reach */
+                           * accesses, each of their parameters, rates and reductions, the
+                           * same reach */
     sph_list parts;       /* of const char *: the names of at least two functions, in the order in
                            * which a recipe has them, one behind the other */
 } sph_fusion;

@@ -48,6 +48,9 @@ static sph_status nothing(const sph_batch *b)
 #define BETA SPH_PARAM("beta", "", "", 1, 1, 0)
 #define GAIN SPH_PARAM("gain", "", "", 1, 1, 0)
 
+static const sph_rate left_rate[] = {SPH_RATE("m", "l", SPH_KICK)};
+static const sph_reduction right_reduction[] = {
+    SPH_REDUCTION("most", "r", SPH_REDUCE_MAX, SPH_USE_NONE)};
 static sph_prop left_prop[3], right_prop[3], both_prop[4], last_prop[1], all_prop[5];
 static sph_param left_param[2], right_param[2], both_param[3];
 static sph_item left_item, right_item, both_item, last_item, all_item;
@@ -183,6 +186,14 @@ static void what_contradicts_itself_is_refused(void **state)
     refused("\"both\" does not declare the parameter \"gain\" of its part \"left\"");
     both_item.params = LIST(both_param + 1, 2);
     refused("\"both\" does not declare the parameter \"alpha\" of its part \"left\"");
+    both_param[2].def = 2;
+    refused("the parameter \"gain\" of \"both\" has another type or default than that of its part");
+    both_item.dims = SPH_DIM2;
+    refused("\"both\" is for fewer dimensions than its part \"left\"");
+    left.rates = (sph_list)SPH_LIST(left_rate);
+    refused("\"both\" does not declare \"l\" as the rate of \"m\", as its part \"left\" does");
+    right.reductions = (sph_list)SPH_LIST(right_reduction);
+    refused("\"both\" does not declare the reduction \"most\" as its part \"right\" does");
     left.reach = SPH_GATHER;
     refused("\"left\" is no pair function of the same reach in one sweep and without prepare and "
             "life, so it cannot be a part of \"both\"");

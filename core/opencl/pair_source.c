@@ -138,6 +138,8 @@ static const char *const kernel_words[] = {
     "#define sph_w(form, q) sph_value((form), sph_table, (q))",
     "#define sph_dw(form, q) sph_slope((form), sph_table, (q))",
     "#define sph_dw_q(form, q) sph_slope_over_q((form), sph_table, (q))",
+    "#define sph_grad(form, weight, r, hinv) \\",
+    "    ((weight) * sph_ipow((hinv), DIM + 2) * sph_dw_q((form), (r) * (hinv)))",
     "",
 };
 

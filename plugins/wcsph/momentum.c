@@ -3,20 +3,20 @@
 #include "wcsph.h"
 #include <math.h>
 
-enum { M, V, RHO, P, CS, DRHO, A, DT };
+enum { M, V, RHO, P_RHO2, CS, DRHO, A, DT };
 enum { ALPHA, BETA, GRAVITY };
 
 static const sph_param params[] = {WCSPH_VISCOSITY, WCSPH_GRAVITY};
 
 static const sph_prop props[] = {
     WCSPH_M,   WCSPH_V,
-    WCSPH_RHO, WCSPH_P,
+    WCSPH_RHO, WCSPH_P_RHO2(WCSPH_READ),
     WCSPH_CS,  SPH_PROP("drho", "kg/m^d/s", "rate of the density", SPH_SCALAR, SPH_DST_READ, 0.0),
     WCSPH_A,   WCSPH_DT,
 };
 
 #define SPH_LOOP sweep
-#define SPH_LOOP_I(S, V_, M_) V_(v, V) S(rho, RHO) S(p, P) S(cs, CS)
+#define SPH_LOOP_I(S, V_, M_) V_(v, V) S(rho, RHO) S(p_rho2, P_RHO2) S(cs, CS)
 #define SPH_LOOP_J(S, V_, M_) S(m, M) SPH_LOOP_I(S, V_, M_)
 #define SPH_LOOP_SUM(S, V_, M_) V_(a, A)
 #define SPH_LOOP_PARAM(P_) P_(alpha, ALPHA) P_(beta, BETA)

@@ -6,6 +6,7 @@
 
 static const sph_step steps[] = {
     SPH_STEP_EOS(SPH_AT_EVALUATE),
+    SPH_STEP(SPH_AT_EVALUATE, "wcsph-pressure"),
     SPH_STEP(SPH_AT_EVALUATE, "wcsph-continuity"),
     SPH_STEP(SPH_AT_EVALUATE, "wcsph-momentum"),
 };
@@ -38,7 +39,8 @@ static const sph_fusion fusion = {SIZE(sph_fusion), 0u, "wcsph-rates", SPH_LIST(
 
 static sph_status init(const sph_host *host)
 {
-    const sph_function *const functions[] = {&wcsph_continuity, &wcsph_momentum, &wcsph_rates};
+    const sph_function *const functions[] = {&wcsph_pressure, &wcsph_continuity, &wcsph_momentum,
+                                             &wcsph_rates};
     const sph_fusions *fusions = host->extension(host, SPH_EXT_FUSION);
     for (uint32_t i = 0; i < sizeof functions / sizeof functions[0]; i++) {
         const sph_status status = host->register_item(host, SPH_KIND_FUNCTION, functions[i]);

@@ -4,6 +4,7 @@
 
 #include <sph/plugin.h>
 
+extern const sph_function wcsph_pressure;   /* pressure.c */
 extern const sph_function wcsph_continuity; /* continuity.c */
 extern const sph_function wcsph_momentum;   /* momentum.c */
 extern const sph_function wcsph_rates;      /* rates.c: both in one sweep */
@@ -28,7 +29,9 @@ sph_status wcsph_finish(const sph_batch *b, const struct wcsph_finish *at);
 #define WCSPH_M SPH_PROP("m", "kg", "mass", SPH_SCALAR, SPH_SRC_READ, NAN)
 #define WCSPH_V SPH_PROP("v", "m/s", "velocity", SPH_VECTOR, WCSPH_READ, 0.0)
 #define WCSPH_RHO SPH_PROP("rho", "kg/m^d", "density", SPH_SCALAR, WCSPH_READ, NAN)
-#define WCSPH_P SPH_PROP("p", "J/m^d", "pressure", SPH_SCALAR, WCSPH_READ, NAN)
+#define WCSPH_P_RHO2(access)                                                                       \
+    SPH_PROP("p_rho2", "J m^d/kg^2", "pressure over the square of the density", SPH_SCALAR,        \
+             (access), 0.0)
 #define WCSPH_CS SPH_PROP("cs", "m/s", "speed of sound", SPH_SCALAR, WCSPH_READ, NAN)
 #define WCSPH_DRHO SPH_PROP("drho", "kg/m^d/s", "rate of the density", SPH_SCALAR, SPH_DST_SUM, 0.0)
 #define WCSPH_A SPH_PROP("a", "m/s^2", "acceleration", SPH_VECTOR, SPH_DST_SUM | SPH_DST_READ, 0.0)

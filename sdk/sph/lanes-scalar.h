@@ -126,6 +126,12 @@ SPH_INLINE R SPH_OF_ISA(sph_dw_q_)(const FORM *f, R q, int shape)
     return q > (R)0.0 ? SPH_OF_ISA(sph_dw_)(f, q, shape) / q : (R)0.0;
 }
 
+SPH_INLINE R SPH_OF_ISA(sph_grad_)(const FORM *f, R weight, R r, R hinv, uint32_t dim, int shape)
+{
+    return weight * SPH_OF_ISA(sph_ipow_)(hinv, dim + 2) *
+           SPH_OF_ISA(sph_dw_q_)(f, r * hinv, shape);
+}
+
 #undef R
 #undef B
 #undef FORM

@@ -14,6 +14,7 @@
  *   sph_w(K, q), sph_dw(K, q)        kernel and its derivative in q = r / h, without powers of h
  *   sph_dw_q(K, q)                   the latter over q: for gradients along dx, without 1 / r. Some
  *                                    number at q = 0 (0 or the limit), where dx is 0
+ *   sph_grad(K, a, r, hinv)          a h^-(DIM + 2) W'(q) / q at q = r hinv: times dx, a grad W
  *   sph_ipow(a, DIM)                 a small whole power
  * No branches on lanes, no calls to anything else. */
 
@@ -151,7 +152,8 @@ SPH_INLINE R SPH_OF_ISA(sph_min_)(R a, R b)
 }
 #endif
 
-/* Which lanes take part in a pair, in the form that is cheapest to use: M. */
+/* Which lanes take part in a pair, in the form that is cheapest to use: M. Sums are chosen after the
+ * addition, so that it and the product before it become one instruction. */
 #ifdef SPH_AVX512_WORDS
 typedef unsigned char M;
 #if SPH_F32_WORDS
@@ -166,11 +168,11 @@ SPH_INLINE B SPH_OF_ISA(sph_mask_of_)(M m)
 }
 SPH_INLINE R SPH_OF_ISA(sph_add_where_)(M m, R sum, R a)
 {
-    return (R)_mm256_mask_add_ps((__m256)sum, m, (__m256)sum, (__m256)a);
+    return (R)_mm256_mask_blend_ps(m, (__m256)sum, (__m256)(sum + a));
 }
 SPH_INLINE R SPH_OF_ISA(sph_sub_where_)(M m, R sum, R a)
 {
-    return (R)_mm256_mask_sub_ps((__m256)sum, m, (__m256)sum, (__m256)a);
+    return (R)_mm256_mask_blend_ps(m, (__m256)sum, (__m256)(sum - a));
 }
 #else
 SPH_INLINE M SPH_OF_ISA(sph_within_)(R r2, R reach2, B number, B j)
@@ -184,11 +186,11 @@ SPH_INLINE B SPH_OF_ISA(sph_mask_of_)(M m)
 }
 SPH_INLINE R SPH_OF_ISA(sph_add_where_)(M m, R sum, R a)
 {
-    return (R)_mm512_mask_add_pd((__m512d)sum, m, (__m512d)sum, (__m512d)a);
+    return (R)_mm512_mask_blend_pd(m, (__m512d)sum, (__m512d)(sum + a));
 }
 SPH_INLINE R SPH_OF_ISA(sph_sub_where_)(M m, R sum, R a)
 {
-    return (R)_mm512_mask_sub_pd((__m512d)sum, m, (__m512d)sum, (__m512d)a);
+    return (R)_mm512_mask_blend_pd(m, (__m512d)sum, (__m512d)(sum - a));
 }
 #endif
 #else
@@ -203,11 +205,11 @@ SPH_INLINE B SPH_OF_ISA(sph_mask_of_)(M m)
 }
 SPH_INLINE R SPH_OF_ISA(sph_add_where_)(M m, R sum, R a)
 {
-    return sum + (R)(m & (B)a);
+    return SPH_OF_ISA(sph_select_)(m, sum + a, sum);
 }
 SPH_INLINE R SPH_OF_ISA(sph_sub_where_)(M m, R sum, R a)
 {
-    return sum - (R)(m & (B)a);
+    return SPH_OF_ISA(sph_select_)(m, sum - a, sum);
 }
 #endif
 
@@ -371,6 +373,17 @@ SPH_INLINE R SPH_OF_ISA(sph_dw_q_)(const FORM *f, R q, int shape)
                                                                         f->en_coef, f->piece[0].e);
     }
     return SPH_OF_ISA(sph_select_)((B)(q > zero), SPH_OF_ISA(sph_dw_)(f, q, shape) / q, zero);
+}
+
+/* The weight meets the powers of h first: neither waits for r. */
+SPH_INLINE R SPH_OF_ISA(sph_grad_)(const FORM *f, R weight, R r, R hinv, uint32_t dim, int shape)
+{
+    const R scale = SPH_OF_ISA(sph_ipow_)(hinv, dim + 2);
+    if (shape == SPH_SHAPE_C2) {
+        const R zero = {0}, t = SPH_OF_ISA(sph_max_)(f->piece[0].knot - r * hinv, zero);
+        return t * t * t * (weight * (scale * f->piece[0].e[0]));
+    }
+    return SPH_OF_ISA(sph_dw_q_)(f, r * hinv, shape) * (weight * scale);
 }
 
 #undef SPH_MM

@@ -36,6 +36,18 @@
         *sph_o = name[l] is * sph_o || name[l] != name[l] ? name[l] : *sph_o;                      \
     }
 
+/* dx and r2 from source j. */
+#if SPH_F32_WORDS
+#define SPH_APART_ALONG(c, j) __builtin_convertvector(x_i[c] - x_s[c][j], R) * quantum
+#else
+#define SPH_APART_ALONG(c, j) x_i[c] - x_s[c][j]
+#endif
+#define SPH_APART(dx, r2, j)                                                                       \
+    for (int sph_c = 0; sph_c < DIM; sph_c++) {                                                    \
+        (dx)[sph_c] = SPH_APART_ALONG(sph_c, j);                                                   \
+        (r2) += (dx)[sph_c] * (dx)[sph_c];                                                         \
+    }
+
 static sph_status SPH_LOOP_NAME(const sph_batch *b)
 {
     FORM sph_local;
@@ -79,18 +91,25 @@ static sph_status SPH_LOOP_NAME(const sph_batch *b)
         for (uint64_t sph_s = b->begin[sph_g]; sph_s < b->begin[sph_g + 1]; sph_s++) {
             const uint32_t sph_base = b->span[sph_s].base, sph_n = b->span[sph_s].count;
             const uint16_t *const sph_steps = b->list + b->span[sph_s].first;
+            if (sph_n == 0)
+                continue;
+            /* Of each pair what its body waits for longest, the root, is begun while the pair before
+             * it is worked on: the processor's own reordering does not reach that far. */
+            size_t sph_next = (size_t)sph_base + sph_steps[0];
+            R sph_dx[DIM], sph_r2 = {0};
+            SPH_APART(sph_dx, sph_r2, sph_next)
+            R sph_r = sph_sqrt(sph_r2), sph_rinv = sph_rsqrt(sph_r2);
             for (uint32_t sph_k = 0; sph_k < sph_n; sph_k++) {
-                const size_t j = (size_t)sph_base + sph_steps[sph_k];
+                const size_t j = sph_next;
+                const R r2 = sph_r2, r = sph_r, rinv = sph_rinv;
                 R dx[DIM];
-                R r2 = {0};
-                for (int c = 0; c < DIM; c++) {
-#if SPH_F32_WORDS
-                    dx[c] = __builtin_convertvector(x_i[c] - x_s[c][j], R) * quantum;
-#else
-                    dx[c] = x_i[c] - x_s[c][j];
-#endif
-                    r2 += dx[c] * dx[c];
-                }
+                for (int c = 0; c < DIM; c++)
+                    dx[c] = sph_dx[c];
+                sph_next = (size_t)sph_base + sph_steps[sph_k + 1 < sph_n ? sph_k + 1 : sph_k];
+                sph_r2 = (R){0};
+                SPH_APART(sph_dx, sph_r2, sph_next)
+                sph_r = sph_sqrt(sph_r2);
+                sph_rinv = sph_rsqrt(sph_r2);
                 const R h_j = SPH_UNIFORM ? h_i : sph_num(h_s[j]);
                 const R hinv_j = SPH_UNIFORM ? hinv_i : sph_num((T)1.0 / h_s[j]);
                 const T reach_j = SPH_UNIFORM ? (T)0.0 : K->support * h_s[j];
@@ -100,8 +119,8 @@ static sph_status SPH_LOOP_NAME(const sph_batch *b)
                 const SPH_OF_ISA(sph_lanes_in) sph_within =
                     SPH_OF_ISA(sph_within_)(r2, reach2, number, SPH_OF_ISA(sph_whole_)((SPH_INT)j));
                 const B in = SPH_OF_ISA(sph_mask_of_)(sph_within);
-                SPH_ROOTS(r2);
                 (void)in;
+                (void)dx;
                 (void)rinv;
                 (void)r;
                 (void)h_j;
@@ -132,5 +151,7 @@ static sph_status SPH_LOOP_NAME(const sph_batch *b)
 #undef SPH_O_MIN
 #undef SPH_O_MAX
 #undef SPH_O_LEAST
+#undef SPH_APART
+#undef SPH_APART_ALONG
 #include <sph/pair-columns.h>
 #undef SPH_HELD

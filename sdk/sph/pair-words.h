@@ -29,6 +29,8 @@
 #define sph_w(kernel, q) SPH_OF_ISA(sph_w_)((kernel), (q), SPH_KERNEL_SHAPE)
 #define sph_dw(kernel, q) SPH_OF_ISA(sph_dw_)((kernel), (q), SPH_KERNEL_SHAPE)
 #define sph_dw_q(kernel, q) SPH_OF_ISA(sph_dw_q_)((kernel), (q), SPH_KERNEL_SHAPE)
+#define sph_grad(kernel, weight, r, hinv)                                                          \
+    SPH_OF_ISA(sph_grad_)((kernel), (weight), (r), (hinv), DIM, SPH_KERNEL_SHAPE)
 #define sph_add(acc, value) ((acc) = SPH_OF_ISA(sph_add_where_)(sph_within, (acc), (value)))
 #define sph_sub(acc, value) ((acc) = SPH_OF_ISA(sph_sub_where_)(sph_within, (acc), (value)))
 #define sph_take_min(acc, value) ((acc) = sph_min(sph_select(in, (value), (acc)), (acc)))
@@ -59,6 +61,7 @@
 #undef sph_dw_q
 #undef SPH_UNIFORM
 #undef SPH_KERNEL_SHAPE
+#undef sph_grad
 #undef sph_add
 #undef sph_sub
 #undef sph_take_min

@@ -108,6 +108,10 @@ void engine_make(struct engine *g, struct registry *r, const struct pair_case *f
     add_scalar(g, "m", fluid->m, 0.0);
     add_scalar(g, "rho", fluid->rho, 0.0);
     add_scalar(g, "p", fluid->p, 0.0);
+    add_scalar(g, "p_rho2", NULL, 0.0);
+    for (size_t i = 0; i < g->p.n; i++) /* as wcsph-pressure has it */
+        plane(g, particles_find(&g->p, "p_rho2"), 0)[i] =
+            fluid->p[g->was[i]] / (fluid->rho[g->was[i]] * fluid->rho[g->was[i]]);
     add_scalar(g, "cs", NULL, fluid->cs);
     engine_place(g, 0.0);
 }

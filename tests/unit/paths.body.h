@@ -5,7 +5,7 @@ const R edge = sph_sqrt(4.0 - q * q);
 const R w = share * m_j * h_j * sph_w(K, q) * edge;
 sph_add(sum, w);
 sph_add(sum_abs, sph_abs(w));
-const R slope = m_j * sph_ipow(hinv_i, DIM) * sph_dw_q(K, q);
+const R slope = m_j * sph_ipow(hinv_i, DIM) * sph_dw_q(K, q) + sph_grad(K, m_j, r, hinv_i);
 for (int a = 0; a < DIM; a++) {
     const R push = slope * dx[a] + sph_dw(K, q) * (v_i[a] - v_j[a]) * (dx[a] * rinv);
     sph_sub(flow[a], push);

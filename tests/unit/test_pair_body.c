@@ -25,6 +25,7 @@ static const char body_text[] =
     "sph_add(sum, share * m_j * (sph_w(K, q) + sph_sqrt(4.0 - s * s)));\n"
     "for (int a = 0; a < DIM; a++)\n"
     "    sph_sub(flow[a], sph_dw(K, q) * rinv * (v_j[a] - v_i[a]));\n"
+    "sph_add(rest, sph_grad(K, m_j, r, hinv_i) * r2);\n"
     "const T third = 1.0 / 3.0;\n"
     "sph_add(rest, sph_dw_q(K, q) * r2 * sph_rsqrt(1.0 + q) + sph_exp(-m_j));\n"
     "sph_sub(rest, sph_log(m_j) * sph_pow(m_j, q) + sph_pow_where(in, q, sph_num(third)));\n"
@@ -221,7 +222,8 @@ static struct sums plain(int i, const sph_device_body *d, bool same)
         out.sum += 0.3 * cloud.m[j] * (kernel_form_w(&cloud.kernel, q) + sqrt(4 - s * s));
         out.rest += exp(-cloud.m[j]) - log(cloud.m[j]) * pow(cloud.m[j], q) - cbrt(q);
         if (r > 0)
-            out.rest += kernel_form_dw(&cloud.kernel, q) / q * r * r / sqrt(1 + q);
+            out.rest += kernel_form_dw(&cloud.kernel, q) / q * r * r *
+                        (1 / sqrt(1 + q) + cloud.m[j] * pow(cloud.h[i], -cloud.dim - 2));
         for (int c = 0; c < cloud.dim && r > 0; c++)
             out.flow[c] += kernel_form_dw(&cloud.kernel, q) / r *
                            (cloud.v[c * PLANE + i] - cloud.v[c * PLANE + j]);

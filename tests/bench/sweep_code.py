@@ -33,7 +33,8 @@ def functions(path, isa):
 
 def pair_loop(code):
     """Instructions of the loop over pairs: the one around the distance's square root. Loops within it (a
-    kernel's powers, iterations with roots of their own) are part of it."""
+    kernel's powers, iterations with roots of their own) are part of it; where the root of a pair is begun
+    while the pair before it is worked on, so is the loop over spans, in which the first one's stands."""
     place = {address: k for k, (address, _) in enumerate(code)}
     end = {}  # of the loop with this first instruction: a body may jump back from several places
     for k, (address, text) in enumerate(code):

@@ -16,7 +16,6 @@
 
 #define CELL_MOST 32 /* points of a cell that are sorted by x alone */
 #define GROUP SPH_LANES
-#define WIDE 1.5 /* the largest reach in units of the mean, from which they range widely */
 
 struct sorter {
     const struct cloud *c;
@@ -69,11 +68,13 @@ struct crowd {
     uint64_t seed;
 };
 
-static bool member_before(const struct crowd *c, const struct member *a, const struct member *b,
-                          int axis)
+static inline bool member_before(const struct crowd *c, const struct member *a,
+                                 const struct member *b, int axis)
 {
-    if (a->x[axis] < b->x[axis] || a->x[axis] > b->x[axis]) {
-        return (a->x[axis] < b->x[axis]) != c->turned[axis];
+    bool below = a->x[axis] < b->x[axis], above = a->x[axis] > b->x[axis];
+
+    if (below | above) {
+        return below != c->turned[axis];
     }
     if (c->s->id && c->s->id[a->i] != c->s->id[b->i]) {
         return c->s->id[a->i] < c->s->id[b->i];
@@ -122,9 +123,12 @@ static void part(struct crowd *c, size_t first, size_t last, size_t want, int ax
 
         swap(&m[pivot], &m[last - 1]);
         for (size_t k = first; k + 1 < last; k++) {
-            if (member_before(c, &m[k], &m[last - 1], axis)) {
-                swap(&m[k], &m[low++]);
-            }
+            struct member here = m[k];
+
+            /* Changes places in any case: which are before the pivot no processor foresees. */
+            m[k] = m[low];
+            m[low] = here;
+            low += member_before(c, &here, &m[last - 1], axis);
         }
         swap(&m[low], &m[last - 1]);
         if (want == low || want == low + 1) {
@@ -138,11 +142,11 @@ static void part(struct crowd *c, size_t first, size_t last, size_t want, int ax
     }
 }
 
-static int longest_axis(const struct crowd *c, size_t first, size_t last, double *extent)
+static int longest_axis(const struct crowd *c, size_t first, size_t last)
 {
+    double extent = -1;
     int axis = 0;
 
-    *extent = -1;
     for (int a = 0; a < c->s->c->dim; a++) {
         double lo = INFINITY, hi = -INFINITY;
 
@@ -152,8 +156,8 @@ static int longest_axis(const struct crowd *c, size_t first, size_t last, double
             lo = x < lo ? x : lo;
             hi = x > hi ? x : hi;
         }
-        if (hi - lo > *extent) {
-            *extent = hi - lo;
+        if (hi - lo > extent) {
+            extent = hi - lo;
             axis = a;
         }
     }
@@ -165,8 +169,6 @@ static int longest_axis(const struct crowd *c, size_t first, size_t last, double
 static void halve(struct crowd *c, size_t first, size_t last)
 {
     size_t begin = (c->first + first) / GROUP, end = (c->first + last + GROUP - 1) / GROUP, middle;
-    double extent;
-    int axis = longest_axis(c, first, last, &extent);
 
     if (end - begin < 2) {
         /* By x, as in any cell. */
@@ -179,7 +181,7 @@ static void halve(struct crowd *c, size_t first, size_t last)
         return;
     }
     middle = (begin + (end - begin + 1) / 2) * GROUP - c->first;
-    part(c, first, last, middle - first, axis);
+    part(c, first, last, middle - first, longest_axis(c, first, last));
     halve(c, first, middle);
     halve(c, middle, last);
 }
@@ -338,16 +340,4 @@ int cell_order(const struct cloud *points, const int64_t *id, double cell, int t
     status = sort_all(&s, cell, threads > 1 && n > 4096 ? (size_t)threads : 1, e);
     free(s.cell);
     return status;
-}
-
-double cell_best(const struct cloud *points)
-{
-    double sum = 0, most = 0, mean;
-
-    for (size_t i = 0; i < points->n; i++) {
-        sum += points->h[i];
-        most = points->h[i] > most ? points->h[i] : most;
-    }
-    mean = points->n > 0 ? sum / (double)points->n : 0;
-    return points->scale * mean * (points->dim == 3 ? 1 : 1.3) * (most > WIDE * mean ? 3 : 1);
 }

@@ -71,7 +71,8 @@ struct crowd {
 static inline bool member_before(const struct crowd *c, const struct member *a,
                                  const struct member *b, int axis)
 {
-    bool below = a->x[axis] < b->x[axis], above = a->x[axis] > b->x[axis];
+    double p = a->x[axis], q = b->x[axis];
+    bool below = p < q, above = q < p;
 
     if (below | above) {
         return below != c->turned[axis];
@@ -327,7 +328,7 @@ int cell_order(const struct cloud *points, const int64_t *id, double cell, int t
     size_t n = points->n;
     int status;
 
-    if (cloud_check(points, "source", e) != 0) {
+    if (cloud_check(points, "source", threads, e) != 0) {
         return -1;
     }
     if (n == 0) {

@@ -5,6 +5,7 @@
 #include "neighbours/neighbours.h"
 
 #include "neighbours/grid.h"
+#include "neighbours/range.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -15,33 +16,13 @@
 /* The mean reach; 0 if they range widely or a number is none. */
 static double even_reach(const struct cloud *c, double *mean)
 {
-    double sum = 0, most = 0;
+    double sum = 0;
 
     for (size_t i = 0; i < c->n; i++) {
         sum += c->h[i];
-        most = c->h[i] > most ? c->h[i] : most;
     }
     *mean = c->n > 0 ? c->scale * sum / (double)c->n : 0;
-    return c->scale * most <= WIDE * *mean ? *mean : 0;
-}
-
-/* False if an extent is not a number that can be. */
-static bool bounds(const struct cloud *c, double *lo, double *hi)
-{
-    for (int a = 0; a < c->dim; a++) {
-        lo[a] = INFINITY;
-        hi[a] = -INFINITY;
-        for (size_t i = 0; i < c->n; i++) {
-            double x = c->x[a][i];
-
-            lo[a] = x < lo[a] ? x : lo[a];
-            hi[a] = x > hi[a] ? x : hi[a];
-        }
-        if (!(hi[a] - lo[a] < 1e150)) {
-            return false;
-        }
-    }
-    return true;
+    return c->scale * range_of(c->h, c->n, 1).most <= WIDE * *mean ? *mean : 0;
 }
 
 /* Points in a full cell, by the counts of all cells: those at a surface would make it less. */
@@ -68,8 +49,14 @@ static double spacing(const struct cloud *c, double edge)
     struct grid g;
     uint32_t *count;
 
-    if (!bounds(c, lo, hi)) {
-        return 0;
+    for (int a = 0; a < c->dim; a++) {
+        struct range r = range_of(c->x[a], c->n, 1);
+
+        lo[a] = r.least;
+        hi[a] = r.most;
+        if (!(hi[a] - lo[a] < 1e150)) {
+            return 0; /* a number is none */
+        }
     }
     grid_init(&g, lo, hi, c->dim, edge, c->n);
     count = calloc(g.n, sizeof *count);

@@ -8,6 +8,7 @@
 #include "neighbours/neighbours.h"
 
 #include "neighbours/grid.h"
+#include "neighbours/range.h"
 #include "neighbours/sources.h"
 
 #include <math.h>
@@ -224,26 +225,6 @@ static void share(size_t n, size_t threads, size_t t, size_t *first, size_t *end
     *end = (t + 1) * each < n ? (t + 1) * each : n;
 }
 
-static void all_bounds(const struct sorter *s, double *lo, double *hi, size_t threads)
-{
-    for (int a = 0; a < s->c->dim; a++) {
-        const double *x = s->c->x[a];
-        double least = INFINITY, most = -INFINITY;
-
-        (void)threads;
-#pragma omp parallel for schedule(static) num_threads((int)threads) if (threads > 1)               \
-    reduction(min                                                                                  \
-              : least) reduction(max                                                               \
-                                 : most)
-        for (size_t i = 0; i < s->c->n; i++) {
-            least = x[i] < least ? x[i] : least;
-            most = x[i] > most ? x[i] : most;
-        }
-        lo[a] = least;
-        hi[a] = most;
-    }
-}
-
 /* Sorts all points into the cells, in the order in which they stand: each thread counts and moves
  * a share of them. count: [threads][g->n], of which the last thread's are then the ends of the
  * cells. */
@@ -292,7 +273,12 @@ static int sort_all(struct sorter *s, double edge, size_t threads, struct error 
     uint32_t *count, *ends;
     int status = 0;
 
-    all_bounds(s, lo, hi, threads);
+    for (int a = 0; a < s->c->dim; a++) {
+        struct range r = range_of(s->c->x[a], s->c->n, (int)threads);
+
+        lo[a] = r.least;
+        hi[a] = r.most;
+    }
     if (!(edge > 0)) {
         edge = 0; /* as many cells as can be */
     }

@@ -64,7 +64,9 @@ SKIN_INLINE void block_measure(struct skin_block *b, const struct cloud *c, size
         const double *x = c->x[a] + first;
         double lo = INFINITY, hi = -INFINITY, lost;
 
+#ifndef __clang__ /* which says that it cannot, and would do so as a warning */
 #pragma omp simd reduction(min : lo) reduction(max : hi) reduction(+ : sum)
+#endif
         for (size_t k = 0; k < n; k++) {
             lo = x[k] < lo ? x[k] : lo;
             hi = x[k] > hi ? x[k] : hi;
@@ -77,7 +79,9 @@ SKIN_INLINE void block_measure(struct skin_block *b, const struct cloud *c, size
         b->lost += lost * lost;
     }
     b->lost = sqrt(b->lost);
+#ifndef __clang__
 #pragma omp simd reduction(min : least) reduction(max : most) reduction(+ : sum)
+#endif
     for (size_t k = 0; k < n; k++) {
         least = h[k] < least ? h[k] : least;
         most = h[k] > most ? h[k] : most;

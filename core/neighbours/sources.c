@@ -2,6 +2,8 @@
  * Reads the clouds; owns the copies. */
 #include "neighbours/sources.h"
 
+#include "neighbours/range.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -39,28 +41,6 @@ static double far_sum(const double *x, size_t n)
     return sum;
 }
 
-static void range_of(const double *x, size_t n, double *least, double *most)
-{
-    double low[LANES] = {0}, high[LANES] = {0};
-    size_t i = 0;
-
-    for (; i + LANES <= n; i += LANES) {
-        for (size_t k = 0; k < LANES; k++) {
-            low[k] = x[i + k] < low[k] ? x[i + k] : low[k];
-            high[k] = x[i + k] > high[k] ? x[i + k] : high[k];
-        }
-    }
-    for (; i < n; i++) {
-        low[0] = x[i] < low[0] ? x[i] : low[0];
-        high[0] = x[i] > high[0] ? x[i] : high[0];
-    }
-    *least = *most = 0;
-    for (size_t k = 0; k < LANES; k++) {
-        *least = low[k] < *least ? low[k] : *least;
-        *most = high[k] > *most ? high[k] : *most;
-    }
-}
-
 static struct survey survey_slice(const struct cloud *c, size_t first, size_t n)
 {
     struct survey s = {.good = true};
@@ -69,10 +49,11 @@ static struct survey survey_slice(const struct cloud *c, size_t first, size_t n)
         s.good = s.good && isfinite(far_sum(c->x[a] + first, n));
     }
     if (c->h) {
-        double least, sum = far_sum(c->h + first, n);
+        double sum = far_sum(c->h + first, n);
+        struct range h = range_of(c->h + first, n, 1);
 
-        range_of(c->h + first, n, &least, &s.most);
-        s.good = s.good && isfinite(sum) && !(least < 0);
+        s.good = s.good && isfinite(sum) && !(h.least < 0);
+        s.most = h.most > 0 ? h.most : 0;
         s.sum = sum / (1e308 / FAR);
     }
     return s;
@@ -245,16 +226,12 @@ void sources_free(struct sources *s)
     memset(s, 0, sizeof *s);
 }
 
-void sources_bounds(const struct sources *s, double *lo, double *hi)
+void sources_bounds(const struct sources *s, int threads, double *lo, double *hi)
 {
     for (int a = 0; a < s->dim; a++) {
-        lo[a] = INFINITY;
-        hi[a] = -INFINITY;
-        for (size_t i = 0; i < s->n; i++) {
-            double x = s->x[a][i];
+        struct range r = range_of(s->x[a], s->n, threads);
 
-            lo[a] = x < lo[a] ? x : lo[a];
-            hi[a] = x > hi[a] ? x : hi[a];
-        }
+        lo[a] = r.least;
+        hi[a] = r.most;
     }
 }

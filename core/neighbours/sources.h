@@ -41,7 +41,7 @@ struct query {
 int sources_make(struct sources *s, const struct cloud *dst, const struct cloud *src,
                  bool symmetric, double factor, int threads, struct error *e);
 void sources_free(struct sources *s);
-void sources_bounds(const struct sources *s, double *lo, double *hi);
+void sources_bounds(const struct sources *s, int threads, double *lo, double *hi);
 
 /* Fails with the first point whose position is not finite, or whose h is negative or not finite. */
 int cloud_check(const struct cloud *c, const char *role, int threads, struct error *e);

@@ -33,6 +33,7 @@ struct worker {
     double least[LEAF];
     size_t eight_at;
     struct bitset near, unsorted; /* leaves near a query; sources of a group */
+    size_t left, last; /* of its chunks the first not yet moved into the list, the last */
     uint64_t visited, candidates;
     bool no_memory;
     char apart[64]; /* from the next one's cache lines */

@@ -1,6 +1,7 @@
 /* neighbours/lists.c -- makes the source lists of groups of destinations. Reads the clouds,
- * writes the list. Groups are shared among threads in chunks, whose lists are then joined in
- * order. */
+ * writes the list. Groups are shared among threads in chunks, which each makes in memory of its
+ * own. Where a chunk goes is known once all before it are made; it is then moved there out of the
+ * cache, if the list has room, as it has when it is made again; else when all are made. */
 #include "neighbours/worker.h"
 
 #include <stdlib.h>
@@ -11,15 +12,21 @@
 
 #define CHUNK 512 /* groups that a thread takes at a time */
 
-/* Where a chunk's lists stand in its worker's memory. */
+#define NONE SIZE_MAX
+
+/* Where a chunk's lists stand in its worker's memory, and where they go in the list. */
 struct chunk {
-    size_t worker, span, n_span, step, n_step;
+    size_t span, n_span, step, n_step;
+    size_t to_span, to_step;
+    size_t next; /* of the same worker */
+    bool made;
 };
 
 struct team {
     struct worker *worker;
     struct chunk *chunk;
     size_t n_worker, n_chunk;
+    size_t n_placed, n_span, n_step; /* chunks that know where they go; what is in them */
 };
 
 static int worker_number(void)
@@ -31,18 +38,85 @@ static int worker_number(void)
 #endif
 }
 
+/* Says where chunks go, up to the first that is not yet made; how many know it. */
+static size_t chunk_made(struct team *t, size_t k)
+{
+    size_t placed;
+
+#pragma omp critical(neighbour_chunks)
+    {
+        t->chunk[k].made = true;
+        for (; t->n_placed < t->n_chunk && t->chunk[t->n_placed].made; t->n_placed++) {
+            struct chunk *c = &t->chunk[t->n_placed];
+
+            c->to_span = t->n_span;
+            c->to_step = t->n_step;
+            t->n_span += c->n_span;
+            t->n_step += c->n_step;
+        }
+        placed = t->n_placed;
+    }
+    return placed;
+}
+
+/* Moves what a worker has left of the chunks before `placed`, as far as there is room. */
+static void chunks_move(const struct group_list *list, const struct team *t, struct worker *w,
+                        size_t placed)
+{
+    while (w->left < placed) {
+        const struct chunk *c = &t->chunk[w->left];
+        sph_span *span = list->span + c->to_span;
+
+        if (c->to_span + c->n_span > list->span_capacity ||
+            c->to_step + c->n_step > list->step_capacity) {
+            return;
+        }
+        for (size_t s = 0; s < c->n_span; s++) {
+            span[s] = w->span[c->span + s];
+            span[s].first += c->to_step - c->step;
+        }
+        if (c->n_step > 0) {
+            memcpy(list->step + c->to_step, w->step + c->step, c->n_step * sizeof *w->step);
+        }
+        w->left = c->next;
+    }
+}
+
+/* Appends chunk k to its worker's memory, which begins anew where all in it has been moved. */
+static void chunk_make(const struct team *t, const struct job *j, size_t n_group, struct worker *w,
+                       size_t k)
+{
+    struct chunk *c = &t->chunk[k];
+    size_t first = k * CHUNK, last = first + CHUNK;
+
+    if (w->left == NONE && t->n_worker > 1) {
+        w->n_span = w->n_step = 0;
+    }
+    *c = (struct chunk){.span = w->n_span, .step = w->n_step, .next = NONE};
+    worker_make(j, w, first, last < n_group ? last : n_group);
+    c->n_span = w->n_span - c->span;
+    c->n_step = w->n_step - c->step;
+    if (w->left == NONE) {
+        w->left = k;
+    } else {
+        t->chunk[w->last].next = k;
+    }
+    w->last = k;
+}
+
 /* Which thread makes a chunk does not matter: what is in it depends on nothing but its groups. */
-static void team_run(struct team *t, const struct job *j, size_t n_group)
+static void team_run(const struct group_list *list, struct team *t, const struct job *j)
 {
 #pragma omp parallel for schedule(dynamic, 1) num_threads((int)t->n_worker)
     for (size_t k = 0; k < t->n_chunk; k++) {
-        size_t me = (size_t)worker_number(), first = k * CHUNK, last = first + CHUNK;
-        struct worker *w = &t->worker[me];
+        struct worker *w = &t->worker[worker_number()];
+        size_t placed;
 
-        t->chunk[k] = (struct chunk){.worker = me, .span = w->n_span, .step = w->n_step};
-        worker_make(j, w, first, last < n_group ? last : n_group);
-        t->chunk[k].n_span = w->n_span - t->chunk[k].span;
-        t->chunk[k].n_step = w->n_step - t->chunk[k].step;
+        chunk_make(t, j, list->n_group, w, k);
+        placed = chunk_made(t, k);
+        if (t->n_worker > 1) {
+            chunks_move(list, t, w, placed);
+        }
     }
 }
 
@@ -69,8 +143,8 @@ static void list_take(struct group_list *list, struct worker *w)
     w->span_capacity = w->step_capacity = 0;
 }
 
-/* An array of n elements and little more; what was in it is kept if `keep`. */
-static int resize(void *array, size_t *capacity, size_t n, size_t size, bool keep, struct error *e)
+/* An array of n elements and little more, with what was in it. */
+static int resize(void *array, size_t *capacity, size_t n, size_t size, struct error *e)
 {
     void *old, *fresh;
 
@@ -79,98 +153,61 @@ static int resize(void *array, size_t *capacity, size_t n, size_t size, bool kee
         return 0;
     }
     n += n / 128 + 16;
-    if (!keep) {
-        free(old);
-        old = NULL;
-    }
     fresh = realloc(old, n * size);
-    *capacity = fresh ? n : keep ? *capacity : 0;
+    *capacity = fresh ? n : *capacity;
     old = fresh ? fresh : old;
     memcpy(array, &old, sizeof old);
     return fresh ? 0 : error_memory(e, "neighbour lists", n * size);
 }
 
-static int list_resize(struct group_list *list, bool keep, struct error *e)
-{
-    return resize(&list->span, &list->span_capacity, list->n_span, sizeof *list->span, keep, e) ||
-                   resize(&list->step, &list->step_capacity, list->n_entry, sizeof *list->step,
-                          keep, e)
-               ? -1
-               : 0;
-}
-
-/* Where a chunk's spans and steps go: counts become begins. */
-static void team_place(struct group_list *list, const struct team *t)
+/* Each group's count of spans becomes where they begin. */
+static void list_begin(struct group_list *list)
 {
     uint64_t sum = 0;
 
-    for (size_t g = 0; g < list->n_group; g++) {
+    for (size_t g = 0; g <= list->n_group; g++) {
         uint64_t count = list->begin[g];
 
         list->begin[g] = sum;
         sum += count;
     }
-    list->begin[list->n_group] = list->n_span = sum;
-    list->n_entry = 0;
-    for (size_t k = 0; k < t->n_worker; k++) {
-        list->n_entry += t->worker[k].n_step;
-    }
 }
 
-/* Joins the chunks in the order of their groups. */
+/* Puts the chunks together in the order of their groups. */
 static int team_collect(struct group_list *list, struct team *t, struct error *e)
 {
-    size_t *first = NULL, sum = 0;
-
-    team_place(list, t);
+    list->n_span = t->n_span;
+    list->n_entry = t->n_step;
+    list_begin(list);
     if (t->n_worker == 1) {
         list_take(list, &t->worker[0]);
-        return list_resize(list, true, e);
     }
-    first = malloc(t->n_chunk * sizeof *first);
-    if (!first) {
-        return error_memory(e, "neighbour lists", t->n_chunk * sizeof *first);
-    }
-    for (size_t k = 0; k < t->n_chunk; k++) {
-        first[k] = sum;
-        sum += t->chunk[k].n_step;
-    }
-    if (list_resize(list, false, e) != 0) {
-        free(first);
+    if (resize(&list->span, &list->span_capacity, list->n_span, sizeof *list->span, e) != 0 ||
+        resize(&list->step, &list->step_capacity, list->n_entry, sizeof *list->step, e) != 0) {
         return -1;
     }
-#pragma omp parallel for schedule(static) num_threads((int)t->n_worker)
-    for (size_t k = 0; k < t->n_chunk; k++) {
-        const struct chunk *c = &t->chunk[k];
-        const struct worker *w = &t->worker[c->worker];
-        sph_span *span = list->span + list->begin[k * CHUNK];
-
-        for (size_t s = 0; s < c->n_span; s++) {
-            span[s] = w->span[c->span + s];
-            span[s].first += first[k] - c->step;
-        }
-        if (c->n_step > 0) {
-            memcpy(list->step + first[k], w->step + c->step, c->n_step * sizeof *w->step);
+#pragma omp parallel for schedule(static, 1) num_threads((int)t->n_worker) if (t->n_worker > 1)
+    for (size_t k = 0; k < t->n_worker; k++) {
+        if (t->n_worker > 1) {
+            chunks_move(list, t, &t->worker[k], t->n_chunk);
         }
     }
-    free(first);
     return 0;
 }
 
 /* Whether every worker had the memory it needed; counts their work. */
 static int team_check(struct group_list *list, const struct team *t, struct error *e)
 {
-    size_t bytes = 0;
     bool no_memory = false;
 
     list->candidates = list->visited = 0;
     for (size_t k = 0; k < t->n_worker; k++) {
         list->candidates += t->worker[k].candidates;
         list->visited += t->worker[k].visited;
-        bytes += t->worker[k].n_step * sizeof *t->worker[k].step;
         no_memory = no_memory || t->worker[k].no_memory;
     }
-    return no_memory ? error_memory(e, "neighbour lists, and more", bytes) : 0;
+    return no_memory ? error_memory(e, "neighbour lists, and more", t->n_step * sizeof(uint16_t))
+                     : 0;
 }
 
 /* Shares the groups among threads. */
@@ -189,7 +226,10 @@ static int list_fill(struct group_list *list, const struct job *j, int threads, 
     if (t.n_worker == 1) {
         list_lend(list, &t.worker[0]);
     }
-    team_run(&t, j, list->n_group);
+    for (size_t k = 0; k < t.n_worker; k++) {
+        t.worker[k].left = NONE;
+    }
+    team_run(list, &t, j);
     status = team_check(list, &t, e);
     if (status == 0) {
         status = team_collect(list, &t, e);
@@ -239,12 +279,7 @@ static int check(const struct cloud *dst, const struct cloud *src, bool symmetri
     if ((dst->n > 0 && !dst->h) || (symmetric && src->n > 0 && !src->h)) {
         return error_set(e, EXIT_RUN, "neighbour lists of particles without smoothing length");
     }
-    if (cloud_check(dst, "destination", e) != 0) {
-        return -1;
-    }
-    return dst->n == src->n && dst->h == src->h && dst->x[0] == src->x[0]
-               ? 0
-               : cloud_check(src, "source", e);
+    return 0;
 }
 
 int filter_make(struct group_list *list, const struct cloud *dst, const struct cloud *src,
@@ -265,11 +300,12 @@ int filter_make(struct group_list *list, const struct cloud *dst, const struct c
     }
     list->symmetric = symmetric;
     list->candidates = list->visited = list->search_bytes = 0;
+    if (sources_make(&sources, dst, src, symmetric, factor, threads, e) != 0) {
+        list->n_group = 0;
+        return -1;
+    }
     if (dst->n == 0 || src->n == 0) {
         return 0;
-    }
-    if (sources_make(&sources, dst, src, symmetric, factor, threads, e) != 0) {
-        return -1;
     }
     list->manager = manager ? manager : neighbour_manager_default();
     j.manager = list->manager->calls;

@@ -29,7 +29,11 @@ struct worker {
     struct packed_leaf *pack;
     struct packed_box8 *box;
     size_t n_leaf, leaf_capacity;
+    struct box8 eight; /* boxes of groups 8 eight_at and on */
+    double least[LEAF];
+    size_t eight_at;
     struct bitset near, unsorted; /* leaves near a query; sources of a group */
+    size_t left, last; /* of its chunks the first not yet moved into the list, the last */
     uint64_t visited, candidates;
     bool no_memory;
     char apart[64]; /* from the next one's cache lines */

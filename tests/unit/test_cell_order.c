@@ -7,6 +7,7 @@
 #include <cmocka.h>
 
 #include "clouds.h"
+#include "neighbours/range.h"
 
 static void check_permutation(const uint32_t *order, size_t n)
 {
@@ -159,6 +160,71 @@ static void threads_make_no_difference(void **state)
     }
 }
 
+/* The best edge is so many spacings whatever the reach is, at surfaces too, and it is found for any
+ * cloud: no number may keep it from ending. */
+static void best_edge_follows_the_spacing(void **state)
+{
+    static const double wild[] = {NAN, INFINITY, -INFINITY, 1e200, -1e300};
+
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++) {
+        struct owned o = cloud_lattice(dim, dim == 3 ? 31 : dim == 2 ? 170 : 5000, 3);
+        double spacings = dim == 3 ? 3.9 : 3.2;
+
+        for (double h = 1.1; h < 1.6; h += 0.1) {
+            for (size_t i = 0; i < o.c.n; i++) {
+                o.h[i] = h;
+            }
+            assert_true(fabs(cell_best(&o.c) / spacings - 1) < 0.04);
+        }
+        o.h[0] = 100; /* a range that is wide: three reaches or more */
+        assert_true(cell_best(&o.c) > 3 * 2 * 1.5);
+        o.h[0] = 1.5;
+        for (size_t k = 0; k < sizeof wild / sizeof wild[0]; k++) {
+            o.x[dim - 1][7] = wild[k];
+            assert_true(cell_best(&o.c) > 0);
+            o.x[dim - 1][7] = 0;
+            o.h[7] = wild[k];
+            (void)cell_best(&o.c);
+            o.h[7] = 1.5;
+        }
+        o.c.n = 1;
+        assert_true(cell_best(&o.c) > 0);
+        o.c.n = 0;
+        assert_false(cell_best(&o.c) > 0);
+        cloud_free(&o);
+    }
+}
+
+static void ranges(void **state)
+{
+    const size_t n = 40000;
+    double *x = calloc(n, sizeof *x);
+    uint64_t seed = 9;
+
+    (void)state;
+    assert_non_null(x);
+    for (size_t i = 0; i < n; i++) {
+        x[i] = random_unit(&seed) - 0.3;
+    }
+    x[13] = NAN;
+    for (size_t m = 0; m < n; m = m < 40 ? m + 1 : m * 3) {
+        double least = INFINITY, most = -INFINITY;
+
+        for (size_t i = 0; i < m; i++) {
+            least = fmin(least, x[i]);
+            most = fmax(most, x[i]);
+        }
+        for (int threads = 1; threads < 4; threads++) {
+            struct range r = range_of(x, m, threads);
+
+            assert_memory_equal(&r.least, &least, sizeof least);
+            assert_memory_equal(&r.most, &most, sizeof most);
+        }
+    }
+    free(x);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -166,6 +232,8 @@ int main(void)
         cmocka_unit_test(order_follows_the_id),
         cmocka_unit_test(orders_anything),
         cmocka_unit_test(threads_make_no_difference),
+        cmocka_unit_test(best_edge_follows_the_spacing),
+        cmocka_unit_test(ranges),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

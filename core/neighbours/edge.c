@@ -79,5 +79,5 @@ double cell_best(const struct cloud *points)
         return points->dim == 3 ? 3 * mean : 3.9 * mean;
     }
     distance = spacing(points, points->dim == 3 ? 2 * reach : 3 * reach);
-    return distance > 0 ? distance * (points->dim == 3 ? 3.9 : 3.2) : reach;
+    return distance > 0 ? distance * (points->dim == 3 ? 2.0 : 3.2) : reach;
 }

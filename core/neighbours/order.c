@@ -282,6 +282,9 @@ static int sort_all(struct sorter *s, double edge, size_t threads, struct error 
     if (!(edge > 0)) {
         edge = 0; /* as many cells as can be */
     }
+    for (int a = 0; a < s->c->dim; a++) {
+        lo[a] -= 0.25 * edge; /* the rows of a lattice between the cells' sides, not on them */
+    }
     grid_init(&g, lo, hi, s->c->dim, edge, s->c->n);
     while (threads > 1 && threads * g.n > 4 * s->c->n) {
         threads--; /* counting must not cost more than the points */

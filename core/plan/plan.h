@@ -99,7 +99,12 @@ struct pass {
 struct rate {
     int property, rate;
     uint32_t kind; /* SPH_KICK or SPH_DRIFT */
+    int saved;     /* column of what the integrator keeps of the rate, or -1 */
+    int kept;      /* of the property, or -1 */
+    size_t closed; /* the pass that corrects the property as it makes the rate, or NO_PASS */
+    bool anew;     /* every evaluation overwrites the rate before anything reads it */
 };
+#define NO_PASS SIZE_MAX
 
 /* A global reduction of a pass's column. */
 struct reduction {
@@ -117,6 +122,7 @@ struct plan_array {
     bool *required;  /* per column: an initial value is needed */
     double *initial; /* per column: declared default; NaN: none */
     bool *in_floats; /* per column: held in floats while the run goes on ... */
+    bool *in_two;    /* ... with a second float each for what the first leaves out ... */
     bool *mirrored;  /* ... or in doubles with a mirror in floats */
     struct use eos;  /* of its material; entry NULL: none */
     int position, velocity, smoothing, mass,

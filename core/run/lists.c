@@ -102,7 +102,7 @@ static int sort_array(struct run *r, size_t array, struct error *e)
         status = particles_permute(&a->p, order, e);
     free(order);
     for (size_t c = 0; c < a->p.n_column; c++)
-        r->mirror_old[array][c] = true;
+        r->mirror_old[array][c] = MIRROR_OLD;
     return status;
 }
 

@@ -38,7 +38,8 @@ static int hold(struct plan *plan, struct error *e)
     for (size_t a = 0; a < plan->n_array; a++) {
         struct plan_array *pa = &plan->array[a];
         for (size_t c = 0; c < pa->p.n_column; c++)
-            if ((pa->in_floats[c] && particles_hold(&pa->p, (int)c, sizeof(float), e)) ||
+            if ((pa->in_floats[c] &&
+                 particles_hold(&pa->p, (int)c, sizeof(float), pa->in_two[c], e)) ||
                 (pa->mirrored[c] && particles_mirror(&pa->p, (int)c, e)))
                 return -1;
     }
@@ -69,6 +70,7 @@ int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool 
     r->h_fixed = !changes_h(plan);
     r->hooks = (struct sph_run){r, hook_reduction, hook_propose};
     r->proposed = INFINITY;
+    r->suspect = true;
     r->ghosts = calloc(n + 1, sizeof *r->ghosts);
     r->list = calloc(plan->n_list + 1, sizeof *r->list);
     r->kept = calloc(n * plan->n_frame + 1, sizeof *r->kept);
@@ -91,7 +93,7 @@ int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool 
         r->mirror_old[a] = malloc((columns + 1) * sizeof *r->mirror_old[a]);
         if (!r->stale[a] || !r->mirror_old[a])
             return error_memory(e, "the run", columns);
-        memset(r->mirror_old[a], true, columns);
+        memset(r->mirror_old[a], MIRROR_OLD, columns);
     }
     if (hold(plan, e))
         return -1;

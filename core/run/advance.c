@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define CHUNK 256
+#define CHUNK 512
 /* Fewer particles than this are done before a second thread has woken. */
 #define PARALLEL_FROM 20000
 

@@ -28,30 +28,6 @@ static void boxes_free(void *search)
     free(b);
 }
 
-static void leaf_box(const struct sources *s, size_t leaf, struct box8 *out, size_t k)
-{
-    size_t first = leaf * LEAF, last = first + LEAF < s->n ? first + LEAF : s->n;
-
-    box_empty(out, k);
-    for (int a = 0; a < 3; a++) {
-        double lo = INFINITY, hi = -INFINITY;
-
-        for (size_t i = first; i < last && a < s->dim; i++) {
-            double x = s->x[a][i];
-
-            lo = x < lo ? x : lo;
-            hi = x > hi ? x : hi;
-        }
-        out->lo[a][k] = a < s->dim ? lo : 0;
-        out->hi[a][k] = a < s->dim ? hi : 0;
-    }
-    for (size_t i = first; i < last && s->scale > 0; i++) {
-        double reach = s->scale * s->h[i];
-
-        out->reach[k] = reach > out->reach[k] ? reach : out->reach[k];
-    }
-}
-
 static bool boxes_alloc(struct boxes *b, size_t *bytes, struct error *e)
 {
     size_t n = b->s->n_leaf;
@@ -79,19 +55,26 @@ static bool boxes_alloc(struct boxes *b, size_t *bytes, struct error *e)
 
 static void boxes_fill(struct boxes *b, int threads)
 {
+    const struct sources *s = b->s;
+    struct points p = {.x = s->x, .h = s->h, .scale = s->scale, .n = s->n, .dim = s->dim};
+
     for (int l = 0; l < b->n_level; l++) {
         size_t n = b->n_node[l], blocks = (n + LEAF - 1) / LEAF;
 
         (void)threads;
 #pragma omp parallel for schedule(static) num_threads(threads) if (blocks > 512)
         for (size_t q = 0; q < blocks; q++) {
+            double least[LEAF];
+
+            if (l == 0) {
+                b->filter->eight(&b->level[0][q], least, &p, q * LEAF);
+                continue;
+            }
             for (size_t k = 0; k < LEAF; k++) {
                 size_t node = q * LEAF + k;
 
                 if (node >= n) {
                     box_empty(&b->level[l][q], k);
-                } else if (l == 0) {
-                    leaf_box(b->s, node, &b->level[0][q], k);
                 } else {
                     box_around(&b->level[l - 1][node], &b->level[l][q], k);
                 }
@@ -134,7 +117,7 @@ static size_t walk(const struct boxes *b, const struct query *q, int level, size
         if (mask) {
             bitset_put(leaf, block / 8, (uint64_t)mask << block % 8 * 8);
         }
-        return LEAF * (size_t)__builtin_popcount(mask);
+        return LEAF * (size_t)bits_of(mask);
     }
     for (; mask; mask &= mask - 1) {
         seen += walk(b, q, level - 1, block * LEAF + (size_t)__builtin_ctz(mask), leaf);

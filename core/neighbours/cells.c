@@ -33,12 +33,11 @@ static void *cells_make(const struct sources *s, const struct filter *filter, in
     double lo[3], hi[3];
 
     (void)filter;
-    (void)threads;
     if (!c) {
         error_memory(e, "the cells of the neighbour search", sizeof *c);
         return NULL;
     }
-    sources_bounds(s, lo, hi);
+    sources_bounds(s, threads, lo, hi);
     grid_init(&c->g, lo, hi, s->dim, s->query, s->n);
     c->largest = s->largest;
     c->head = malloc(c->g.n * sizeof *c->head);

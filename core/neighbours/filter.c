@@ -4,6 +4,15 @@
 #include <math.h>
 #include <string.h>
 
+static void plain_eight(struct box8 *out, double *least, const struct points *p, size_t leaf)
+{
+    for (size_t k = 0; k < LEAF; k++) {
+        size_t first = (leaf + k) * LEAF, last = first + LEAF;
+
+        box_of(out, &least[k], p, k, first, last < p->n ? last : p->n);
+    }
+}
+
 static unsigned plain_near_boxes(const struct box8 *b, const struct query *q, int dim)
 {
     double gap[LEAF] = {0};
@@ -179,7 +188,7 @@ static void plain_steps(uint16_t *out, const uint32_t *found, size_t n, uint32_t
     }
 }
 
-static const struct filter plain = {plain_near_boxes,  plain_pack,        plain_lanes,
+static const struct filter plain = {plain_eight,       plain_near_boxes,  plain_pack, plain_lanes,
                                     plain_near_leaves, plain_near_points, plain_steps};
 
 const struct filter *filter_plain(void)

@@ -39,7 +39,18 @@ struct lanes {
     uint32_t uniform;          /* 1: the largest reach serves for all */
 };
 
+/* Points in columns, whose reach is scale * h; h may be NULL if scale is 0. */
+struct points {
+    const double *const *x, *h;
+    double scale;
+    size_t n;
+    int dim;
+};
+
 struct filter {
+    /* Boxes of the eight leaves from `leaf` on, and the least reach in each; those beyond the last
+     * point are empty. */
+    void (*eight)(struct box8 *out, double *least, const struct points *p, size_t leaf);
     /* Bit k: box k of the eight is nearer to the query than the larger reach, MARGIN included. */
     unsigned (*near_boxes)(const struct box8 *boxes, const struct query *q, int dim);
     /* Fills the packs of n leaves, at most eight, and the boxes around them; those that are left of
@@ -73,7 +84,8 @@ const struct filter *filter_best(void);
 const struct filter *filter_plain(void);
 const struct filter *filter_avx2(void);
 const struct filter *filter_avx512(void);
-/* near_points for AVX-512; on x86-64 alone. */
+/* near_boxes and near_points for AVX-512; on x86-64 alone. */
+unsigned filter_near_boxes_avx512(const struct box8 *boxes, const struct query *q, int dim);
 size_t filter_near_points_avx512(const struct packed_leaf *pack, const uint32_t *leaf,
                                  const uint32_t *chosen, size_t n, const struct lanes *t, int dim,
                                  uint32_t *out);
@@ -90,6 +102,14 @@ static inline const double *filter_eight(const double *x, size_t first, size_t l
     return room;
 }
 
+/* How many bits of a byte are set; processors that count them are not asked for everywhere. */
+static inline unsigned bits_of(unsigned byte)
+{
+    byte -= byte >> 1 & 0x55;
+    byte = (byte & 0x33) + (byte >> 2 & 0x33);
+    return (byte + (byte >> 4)) & 0xf;
+}
+
 static inline void box_empty(struct box8 *b, size_t k)
 {
     for (int a = 0; a < 3; a++) {
@@ -97,6 +117,29 @@ static inline void box_empty(struct box8 *b, size_t k)
         b->hi[a][k] = -INFINITY;
     }
     b->reach[k] = 0;
+}
+
+/* Makes box k of `out`, and *least, those of points [first, last). */
+static inline void box_of(struct box8 *out, double *least, const struct points *p, size_t k,
+                          size_t first, size_t last)
+{
+    box_empty(out, k);
+    *least = p->scale > 0 ? INFINITY : 0;
+    for (size_t i = first; i < last; i++) {
+        double reach = p->scale > 0 ? p->scale * p->h[i] : 0;
+
+        for (int a = 0; a < p->dim; a++) {
+            double x = p->x[a][i];
+
+            out->lo[a][k] = x < out->lo[a][k] ? x : out->lo[a][k];
+            out->hi[a][k] = x > out->hi[a][k] ? x : out->hi[a][k];
+        }
+        out->reach[k] = reach > out->reach[k] ? reach : out->reach[k];
+        *least = reach < *least ? reach : *least;
+    }
+    for (int a = p->dim; a < 3 && first < last; a++) {
+        out->lo[a][k] = out->hi[a][k] = 0;
+    }
 }
 
 /* Makes box k of `out` the one around eight. */

@@ -6,8 +6,70 @@
 #if defined(__x86_64__) && defined(__GNUC__)
 #include <immintrin.h>
 
-#define AVX2 __attribute__((target("avx2,fma")))
-#define AVX2_INLINE static inline __attribute__((always_inline, target("avx2,fma")))
+#define AVX2 __attribute__((target("avx2,fma,popcnt")))
+#define AVX2_INLINE static inline __attribute__((always_inline, target("avx2,fma,popcnt")))
+
+/* Of four vectors the least of each. */
+AVX2_INLINE __m256d avx2_least4(__m256d a, __m256d b, __m256d c, __m256d d)
+{
+    __m256d x = _mm256_min_pd(_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
+    __m256d y = _mm256_min_pd(_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));
+
+    return _mm256_min_pd(_mm256_permute2f128_pd(x, y, 0x20), _mm256_permute2f128_pd(x, y, 0x31));
+}
+
+AVX2_INLINE __m256d avx2_most4(__m256d a, __m256d b, __m256d c, __m256d d)
+{
+    __m256d x = _mm256_max_pd(_mm256_unpacklo_pd(a, b), _mm256_unpackhi_pd(a, b));
+    __m256d y = _mm256_max_pd(_mm256_unpacklo_pd(c, d), _mm256_unpackhi_pd(c, d));
+
+    return _mm256_max_pd(_mm256_permute2f128_pd(x, y, 0x20), _mm256_permute2f128_pd(x, y, 0x31));
+}
+
+/* The least and the largest of each of four leaves of a column. */
+AVX2_INLINE void avx2_range4(const double *x, __m256d *least, __m256d *most)
+{
+    __m256d lo[4], hi[4];
+
+#pragma GCC unroll 4
+    for (int k = 0; k < 4; k++) {
+        __m256d a = _mm256_loadu_pd(x + k * LEAF), b = _mm256_loadu_pd(x + k * LEAF + 4);
+
+        lo[k] = _mm256_min_pd(a, b);
+        hi[k] = _mm256_max_pd(a, b);
+    }
+    *least = avx2_least4(lo[0], lo[1], lo[2], lo[3]);
+    *most = avx2_most4(hi[0], hi[1], hi[2], hi[3]);
+}
+
+AVX2 static void avx2_eight(struct box8 *out, double *least, const struct points *p, size_t leaf)
+{
+    size_t first = leaf * LEAF;
+
+    if (first + LEAF * LEAF > p->n) {
+        filter_plain()->eight(out, least, p, leaf);
+        return;
+    }
+    for (int k = 0; k < LEAF; k += 4) {
+        __m256d lo = _mm256_setzero_pd(), hi = lo, scale = _mm256_set1_pd(p->scale);
+
+        for (int a = 0; a < 3; a++) {
+            if (a < p->dim) {
+                avx2_range4(p->x[a] + first + k * LEAF, &lo, &hi);
+            } else {
+                lo = hi = _mm256_setzero_pd();
+            }
+            _mm256_storeu_pd(&out->lo[a][k], lo);
+            _mm256_storeu_pd(&out->hi[a][k], hi);
+        }
+        lo = hi = _mm256_setzero_pd();
+        if (p->scale > 0) {
+            avx2_range4(p->h + first + k * LEAF, &lo, &hi);
+        }
+        _mm256_storeu_pd(&out->reach[k], _mm256_mul_pd(hi, scale));
+        _mm256_storeu_pd(&least[k], _mm256_mul_pd(lo, scale));
+    }
+}
 
 AVX2_INLINE unsigned avx2_near_four(const struct box8 *b, int k, const struct query *q, int dim)
 {
@@ -365,12 +427,12 @@ AVX2 static void avx2_steps(uint16_t *out, const uint32_t *found, size_t n, uint
     }
 }
 
-static const struct filter avx2 = {avx2_near_boxes,  avx2_pack,        avx2_lanes,
+static const struct filter avx2 = {avx2_eight,       avx2_near_boxes,  avx2_pack, avx2_lanes,
                                    avx2_near_leaves, avx2_near_points, avx2_steps};
 
 static const struct filter avx512 = {
-    avx2_near_boxes,           avx2_pack, avx2_lanes, avx2_near_leaves,
-    filter_near_points_avx512, avx2_steps};
+    avx2_eight,       filter_near_boxes_avx512,  avx2_pack, avx2_lanes,
+    avx2_near_leaves, filter_near_points_avx512, avx2_steps};
 
 const struct filter *filter_avx512(void)
 {
@@ -381,7 +443,10 @@ const struct filter *filter_avx512(void)
 
 const struct filter *filter_avx2(void)
 {
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? &avx2 : NULL;
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") &&
+                   __builtin_cpu_supports("popcnt")
+               ? &avx2
+               : NULL;
 }
 
 #else

@@ -1,5 +1,5 @@
-/* neighbours/filter_avx512.c -- the innermost loop of the neighbour search for AVX-512: two leaves
- * are one vector. The rest is filter_avx2.c. Pure. */
+/* neighbours/filter_avx512.c -- the innermost loops of the neighbour search for AVX-512: eight boxes
+ * are one vector, and so are two leaves. The rest is filter_avx2.c. Pure. */
 #include "neighbours/filter.h"
 
 #if defined(__x86_64__) && defined(__GNUC__)
@@ -8,6 +8,31 @@
 #define AVX512 __attribute__((target("avx2,fma,avx512f,avx512dq,popcnt")))
 #define AVX512_INLINE                                                                              \
     static inline __attribute__((always_inline, target("avx2,fma,avx512f,avx512dq,popcnt")))
+
+AVX512_INLINE unsigned near_eight(const struct box8 *b, const struct query *q, int dim)
+{
+    __m512d gap = _mm512_setzero_pd(), zero = gap, reach;
+
+#pragma GCC unroll 3
+    for (int a = 0; a < dim; a++) {
+        __m512d below = _mm512_sub_pd(_mm512_loadu_pd(b->lo[a]), _mm512_set1_pd(q->hi[a]));
+        __m512d above = _mm512_sub_pd(_mm512_set1_pd(q->lo[a]), _mm512_loadu_pd(b->hi[a]));
+        __m512d d = _mm512_max_pd(_mm512_max_pd(below, above), zero);
+
+        gap = _mm512_fmadd_pd(d, d, gap);
+    }
+    reach = _mm512_max_pd(_mm512_loadu_pd(b->reach), _mm512_set1_pd(q->reach));
+    reach = _mm512_mul_pd(reach, _mm512_set1_pd(1 + MARGIN));
+    return (unsigned)_mm512_cmp_pd_mask(gap, _mm512_mul_pd(reach, reach), _CMP_LE_OQ);
+}
+
+AVX512 unsigned filter_near_boxes_avx512(const struct box8 *b, const struct query *q, int dim)
+{
+    if (dim == 3) {
+        return near_eight(b, q, 3);
+    }
+    return dim == 2 ? near_eight(b, q, 2) : near_eight(b, q, 1);
+}
 
 /* Eight of one leaf and eight of another. */
 AVX512_INLINE __m512 both(const float *p, const float *q)

@@ -77,7 +77,7 @@ static int octree_sort(struct octree *t, int threads, struct error *e)
     if (keys_init(&t->k, s->n, e) != 0) {
         return -1;
     }
-    sources_bounds(s, lo, hi);
+    sources_bounds(s, threads, lo, hi);
     for (int a = 0; a < s->dim; a++) {
         longest = fmax(longest, hi[a] - lo[a]);
     }

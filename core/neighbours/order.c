@@ -8,6 +8,7 @@
 #include "neighbours/neighbours.h"
 
 #include "neighbours/grid.h"
+#include "neighbours/range.h"
 #include "neighbours/sources.h"
 
 #include <math.h>
@@ -16,7 +17,6 @@
 
 #define CELL_MOST 32 /* points of a cell that are sorted by x alone */
 #define GROUP SPH_LANES
-#define WIDE 1.5 /* the largest reach in units of the mean, from which they range widely */
 
 struct sorter {
     const struct cloud *c;
@@ -69,11 +69,14 @@ struct crowd {
     uint64_t seed;
 };
 
-static bool member_before(const struct crowd *c, const struct member *a, const struct member *b,
-                          int axis)
+static inline bool member_before(const struct crowd *c, const struct member *a,
+                                 const struct member *b, int axis)
 {
-    if (a->x[axis] < b->x[axis] || a->x[axis] > b->x[axis]) {
-        return (a->x[axis] < b->x[axis]) != c->turned[axis];
+    double p = a->x[axis], q = b->x[axis];
+    bool below = p < q, above = q < p;
+
+    if (below | above) {
+        return below != c->turned[axis];
     }
     if (c->s->id && c->s->id[a->i] != c->s->id[b->i]) {
         return c->s->id[a->i] < c->s->id[b->i];
@@ -122,9 +125,12 @@ static void part(struct crowd *c, size_t first, size_t last, size_t want, int ax
 
         swap(&m[pivot], &m[last - 1]);
         for (size_t k = first; k + 1 < last; k++) {
-            if (member_before(c, &m[k], &m[last - 1], axis)) {
-                swap(&m[k], &m[low++]);
-            }
+            struct member here = m[k];
+
+            /* Changes places in any case: which are before the pivot no processor foresees. */
+            m[k] = m[low];
+            m[low] = here;
+            low += member_before(c, &here, &m[last - 1], axis);
         }
         swap(&m[low], &m[last - 1]);
         if (want == low || want == low + 1) {
@@ -138,11 +144,11 @@ static void part(struct crowd *c, size_t first, size_t last, size_t want, int ax
     }
 }
 
-static int longest_axis(const struct crowd *c, size_t first, size_t last, double *extent)
+static int longest_axis(const struct crowd *c, size_t first, size_t last)
 {
+    double extent = -1;
     int axis = 0;
 
-    *extent = -1;
     for (int a = 0; a < c->s->c->dim; a++) {
         double lo = INFINITY, hi = -INFINITY;
 
@@ -152,8 +158,8 @@ static int longest_axis(const struct crowd *c, size_t first, size_t last, double
             lo = x < lo ? x : lo;
             hi = x > hi ? x : hi;
         }
-        if (hi - lo > *extent) {
-            *extent = hi - lo;
+        if (hi - lo > extent) {
+            extent = hi - lo;
             axis = a;
         }
     }
@@ -165,8 +171,6 @@ static int longest_axis(const struct crowd *c, size_t first, size_t last, double
 static void halve(struct crowd *c, size_t first, size_t last)
 {
     size_t begin = (c->first + first) / GROUP, end = (c->first + last + GROUP - 1) / GROUP, middle;
-    double extent;
-    int axis = longest_axis(c, first, last, &extent);
 
     if (end - begin < 2) {
         /* By x, as in any cell. */
@@ -179,7 +183,7 @@ static void halve(struct crowd *c, size_t first, size_t last)
         return;
     }
     middle = (begin + (end - begin + 1) / 2) * GROUP - c->first;
-    part(c, first, last, middle - first, axis);
+    part(c, first, last, middle - first, longest_axis(c, first, last));
     halve(c, first, middle);
     halve(c, middle, last);
 }
@@ -219,26 +223,6 @@ static void share(size_t n, size_t threads, size_t t, size_t *first, size_t *end
 
     *first = t * each < n ? t * each : n;
     *end = (t + 1) * each < n ? (t + 1) * each : n;
-}
-
-static void all_bounds(const struct sorter *s, double *lo, double *hi, size_t threads)
-{
-    for (int a = 0; a < s->c->dim; a++) {
-        const double *x = s->c->x[a];
-        double least = INFINITY, most = -INFINITY;
-
-        (void)threads;
-#pragma omp parallel for schedule(static) num_threads((int)threads) if (threads > 1)               \
-    reduction(min                                                                                  \
-              : least) reduction(max                                                               \
-                                 : most)
-        for (size_t i = 0; i < s->c->n; i++) {
-            least = x[i] < least ? x[i] : least;
-            most = x[i] > most ? x[i] : most;
-        }
-        lo[a] = least;
-        hi[a] = most;
-    }
 }
 
 /* Sorts all points into the cells, in the order in which they stand: each thread counts and moves
@@ -289,7 +273,12 @@ static int sort_all(struct sorter *s, double edge, size_t threads, struct error 
     uint32_t *count, *ends;
     int status = 0;
 
-    all_bounds(s, lo, hi, threads);
+    for (int a = 0; a < s->c->dim; a++) {
+        struct range r = range_of(s->c->x[a], s->c->n, (int)threads);
+
+        lo[a] = r.least;
+        hi[a] = r.most;
+    }
     if (!(edge > 0)) {
         edge = 0; /* as many cells as can be */
     }
@@ -325,7 +314,7 @@ int cell_order(const struct cloud *points, const int64_t *id, double cell, int t
     size_t n = points->n;
     int status;
 
-    if (cloud_check(points, "source", e) != 0) {
+    if (cloud_check(points, "source", threads, e) != 0) {
         return -1;
     }
     if (n == 0) {
@@ -338,16 +327,4 @@ int cell_order(const struct cloud *points, const int64_t *id, double cell, int t
     status = sort_all(&s, cell, threads > 1 && n > 4096 ? (size_t)threads : 1, e);
     free(s.cell);
     return status;
-}
-
-double cell_best(const struct cloud *points)
-{
-    double sum = 0, most = 0, mean;
-
-    for (size_t i = 0; i < points->n; i++) {
-        sum += points->h[i];
-        most = points->h[i] > most ? points->h[i] : most;
-    }
-    mean = points->n > 0 ? sum / (double)points->n : 0;
-    return points->scale * mean * (points->dim == 3 ? 1 : 1.3) * (most > WIDE * mean ? 3 : 1);
 }

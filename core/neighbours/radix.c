@@ -107,7 +107,7 @@ static void *radix_make(const struct sources *s, const struct filter *filter, in
     }
     r->dim = s->dim;
     r->largest = s->largest;
-    sources_bounds(s, r->low, hi);
+    sources_bounds(s, threads, r->low, hi);
     for (int a = 0; a < s->dim; a++) {
         edge = fmax(edge, (hi[a] - r->low[a]) / (1 << BITS));
     }

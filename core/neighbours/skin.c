@@ -13,6 +13,8 @@
 #define ERROR_MOST 5e-4  /* of a block's smallest reach: what may be lost by rounding */
 #define RATIO_LEAST 1e-6 /* h that are a smaller part of the block's largest would lose digits */
 
+#define SKIN_INLINE static inline __attribute__((always_inline))
+
 struct skin_block {
     double low[3], step[3];
     double h;       /* largest */
@@ -37,7 +39,7 @@ static inline double ratio_of(uint32_t code)
     return (double)ratio;
 }
 
-static uint16_t code_of(double ratio)
+static inline uint16_t code_of(double ratio)
 {
     float near = (float)ratio;
     uint32_t bits, code;
@@ -51,19 +53,24 @@ static uint16_t code_of(double ratio)
 
 /* -- Keeping ----------------------------------------------------------------------------------- */
 
-static void block_measure(struct skin_block *b, const struct cloud *c, size_t first, size_t last)
+SKIN_INLINE void block_measure(struct skin_block *b, const struct cloud *c, size_t first, size_t n)
 {
-    double least = INFINITY, sum = 0;
+    double least = INFINITY, most = 0, sum = 0;
+    const double *h = c->h + first;
 
     memset(b, 0, sizeof *b);
     b->exact = EXACT_NO;
     for (int a = 0; a < c->dim; a++) {
+        const double *x = c->x[a] + first;
         double lo = INFINITY, hi = -INFINITY, lost;
 
-        for (size_t i = first; i < last; i++) {
-            lo = c->x[a][i] < lo ? c->x[a][i] : lo;
-            hi = c->x[a][i] > hi ? c->x[a][i] : hi;
-            sum += c->x[a][i] * 0; /* NAN if a number is none */
+#ifndef __clang__ /* which says that it cannot, and would do so as a warning */
+#pragma omp simd reduction(min : lo) reduction(max : hi) reduction(+ : sum)
+#endif
+        for (size_t k = 0; k < n; k++) {
+            lo = x[k] < lo ? x[k] : lo;
+            hi = x[k] > hi ? x[k] : hi;
+            sum += x[k] * 0; /* NAN if a number is none */
         }
         b->low[a] = lo;
         b->step[a] = (hi - lo) / CODE_MOST;
@@ -72,39 +79,56 @@ static void block_measure(struct skin_block *b, const struct cloud *c, size_t fi
         b->lost += lost * lost;
     }
     b->lost = sqrt(b->lost);
-    for (size_t i = first; i < last; i++) {
-        least = c->h[i] < least ? c->h[i] : least;
-        b->h = c->h[i] > b->h ? c->h[i] : b->h;
-        sum += c->h[i] * 0;
+#ifndef __clang__
+#pragma omp simd reduction(min : least) reduction(max : most) reduction(+ : sum)
+#endif
+    for (size_t k = 0; k < n; k++) {
+        least = h[k] < least ? h[k] : least;
+        most = h[k] > most ? h[k] : most;
+        sum += h[k] * 0;
     }
+    b->h = most;
     if (!(b->lost + sum <= ERROR_MOST * c->scale * least) || !(least >= RATIO_LEAST * b->h)) {
         b->exact = 0;
         b->lost = 0;
     }
 }
 
-static void block_encode(const struct skin_block *b, const struct cloud *c, size_t first,
-                         size_t last, uint16_t *code)
+SKIN_INLINE void block_encode(const struct skin_block *b, const struct cloud *c, size_t first,
+                              size_t n, uint16_t *code)
 {
-    for (size_t k = 0; k < BLOCK; k++) {
-        size_t i = smaller(first + k, last - 1);
+    const double *h = c->h + first, part = b->h > 0 ? 1 / b->h : 0;
 
-        for (int a = 0; a < c->dim; a++) {
-            double q = b->step[a] > 0 ? (c->x[a][i] - b->low[a]) / b->step[a] + 0.5 : 0;
+    for (int a = 0; a < c->dim; a++) {
+        const double *x = c->x[a] + first, low = b->low[a];
+        const double inverse = b->step[a] > 0 ? 1 / b->step[a] : 0;
 
-            code[(size_t)a * BLOCK + k] = (uint16_t)(q < CODE_MOST ? q : CODE_MOST);
+#pragma omp simd
+        for (size_t k = 0; k < n; k++) {
+            double q = (x[k] - low) * inverse + 0.5;
+
+            code[(size_t)a * BLOCK + k] = (uint16_t)(int32_t)(q < CODE_MOST ? q : CODE_MOST);
         }
-        code[(size_t)c->dim * BLOCK + k] = code_of(b->h > 0 ? c->h[i] / b->h : 0);
+    }
+    code += (size_t)c->dim * BLOCK;
+#pragma omp simd
+    for (size_t k = 0; k < n; k++) {
+        code[k] = code_of(h[k] * part);
+    }
+    for (int a = -c->dim; a <= 0; a++) {
+        for (size_t k = n; k < BLOCK; k++) {
+            code[(ptrdiff_t)k + a * BLOCK] = code[(ptrdiff_t)n - 1 + a * BLOCK];
+        }
     }
 }
 
-static void block_copy(const struct cloud *c, size_t first, size_t last, double *exact)
+static void block_copy(const struct cloud *c, size_t first, size_t n, double *exact)
 {
     for (int a = 0; a <= c->dim; a++) {
         const double *x = a < c->dim ? c->x[a] : c->h;
 
         for (size_t k = 0; k < BLOCK; k++) {
-            exact[(size_t)a * BLOCK + k] = x[smaller(first + k, last - 1)];
+            exact[(size_t)a * BLOCK + k] = x[first + smaller(k, n - 1)];
         }
     }
 }
@@ -146,43 +170,6 @@ static int reserve_exact(struct skin *s, struct error *e)
     return s->exact ? 0 : error_memory(e, "the places of particles", bytes);
 }
 
-int skin_keep(struct skin *s, const struct cloud *c, int threads, struct error *e)
-{
-    size_t columns = (size_t)c->dim + 1;
-
-    if (s->dim != c->dim) {
-        skin_fini(s);
-    }
-    (void)threads;
-    s->dim = c->dim;
-    s->n = c->n;
-    s->n_block = (c->n + BLOCK - 1) / BLOCK;
-    if (reserve_blocks(s, e) != 0) {
-        s->n = SIZE_MAX; /* holds for no cloud */
-        return -1;
-    }
-#pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
-    for (size_t b = 0; b < s->n_block; b++) {
-        block_measure(&s->block[b], c, b * BLOCK, smaller(b * BLOCK + BLOCK, c->n));
-    }
-    if (reserve_exact(s, e) != 0) {
-        s->n = SIZE_MAX;
-        return -1;
-    }
-#pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
-    for (size_t b = 0; b < s->n_block; b++) {
-        const struct skin_block *block = &s->block[b];
-        size_t first = b * BLOCK, last = smaller(first + BLOCK, c->n);
-
-        if (block->exact == EXACT_NO) {
-            block_encode(block, c, first, last, s->code + b * columns * BLOCK);
-        } else {
-            block_copy(c, first, last, s->exact + block->exact * columns * BLOCK);
-        }
-    }
-    return 0;
-}
-
 void skin_fini(struct skin *s)
 {
     free(s->block);
@@ -201,93 +188,170 @@ size_t skin_bytes(const struct skin *s)
 
 /* -- What has changed -------------------------------------------------------------------------- */
 
-/* Where a block's particles were, and less than their h. */
-static inline __attribute__((always_inline)) void block_decode(const struct skin *s, size_t at,
-                                                               double (*x)[BLOCK], double *h)
+/* What is now against what was, of n particles of a block. */
+SKIN_INLINE struct skin_change exact_change(const double *was, const struct cloud *c, size_t first,
+                                            size_t n, double relative)
 {
-    const struct skin_block *b = &s->block[at];
-    size_t columns = (size_t)s->dim + 1;
-    const uint16_t *code = s->code + at * columns * BLOCK;
+    double most = 0, room = INFINITY, none = 0;
 
-    if (b->exact != EXACT_NO) {
-        const double *exact = s->exact + b->exact * columns * BLOCK;
-
-        memcpy(x, exact, (size_t)s->dim * BLOCK * sizeof(double));
-        memcpy(h, exact + (size_t)s->dim * BLOCK, BLOCK * sizeof *h);
-        return;
-    }
-    for (int a = 0; a < s->dim; a++) {
-#pragma omp simd
-        for (size_t k = 0; k < BLOCK; k++) {
-            x[a][k] = b->low[a] + (double)(int32_t)code[(size_t)a * BLOCK + k] * b->step[a];
-        }
-    }
-    code += (size_t)s->dim * BLOCK;
-#pragma omp simd
-    for (size_t k = 0; k < BLOCK; k++) {
-        /* Less that of code 0, which may stand for any smaller one. */
-        h[k] = b->h * (ratio_of(code[k]) - 0x1p-31);
-    }
-}
-
-static inline __attribute__((always_inline)) struct skin_change
-block_change(const struct skin *s, size_t at, const struct cloud *c, double relative)
-{
-    size_t first = at * BLOCK, n = smaller(BLOCK, c->n - first);
-    double x[3][BLOCK], h[BLOCK], most = 0, room = INFINITY, none = 0;
-
-    block_decode(s, at, x, h);
-#ifndef __clang__ /* which says that it cannot, and would do so as a warning */
-#pragma omp simd reduction(max : most) reduction(min : room) reduction(+ : none)
-#endif
     for (size_t k = 0; k < n; k++) {
-        double r2 = 0, left;
+        double r2 = 0, left = (1 + relative) * was[(size_t)c->dim * BLOCK + k] - c->h[first + k];
 
-        for (int a = 0; a < s->dim; a++) {
-            double d = c->x[a][first + k] - x[a][k];
+        for (int a = 0; a < c->dim; a++) {
+            double d = c->x[a][first + k] - was[(size_t)a * BLOCK + k];
 
             r2 += d * d;
         }
-        left = (1 + relative) * h[k] - c->h[first + k];
         most = r2 > most ? r2 : most;
         room = left < room ? left : room;
         none += (r2 + left) * 0;
     }
-    return (struct skin_change){sqrt(most) + s->block[at].lost + none, room * c->scale};
+    return (struct skin_change){sqrt(most) + none, room * c->scale};
 }
 
-typedef struct skin_change change_fn(const struct skin *s, size_t at, const struct cloud *c,
-                                     double relative);
-
-static struct skin_change change_plain(const struct skin *s, size_t at, const struct cloud *c,
-                                       double relative)
+/* The same where the places are kept in codes; h are taken a little less than they were. */
+SKIN_INLINE struct skin_change coded_change(const struct skin_block *b, const uint16_t *code,
+                                            const struct cloud *c, size_t first, size_t n,
+                                            double relative, int dim)
 {
-    return block_change(s, at, c, relative);
+    const double *x[3], *h = c->h + first;
+    double most = 0, room = INFINITY, none = 0;
+
+    for (int a = 0; a < 3; a++) {
+        x[a] = a < dim ? c->x[a] + first : NULL;
+    }
+#ifndef __clang__ /* which says that it cannot, and would do so as a warning */
+#pragma omp simd reduction(max : most) reduction(min : room) reduction(+ : none)
+#endif
+    for (size_t k = 0; k < n; k++) {
+        /* Less that of code 0, which may stand for any smaller one. */
+        double was = b->h * (ratio_of(code[(size_t)dim * BLOCK + k]) - 0x1p-31);
+        double left = (1 + relative) * was - h[k], r2 = 0;
+
+#pragma GCC unroll 3
+        for (int a = 0; a < dim; a++) {
+            double d = b->low[a] + (double)(int32_t)code[(size_t)a * BLOCK + k] * b->step[a];
+
+            d = x[a][k] - d;
+            r2 += d * d;
+        }
+        most = r2 > most ? r2 : most;
+        room = left < room ? left : room;
+        none += (r2 + left) * 0;
+    }
+    return (struct skin_change){sqrt(most) + b->lost + none, room * c->scale};
 }
 
+SKIN_INLINE struct skin_change block_change(const struct skin *s, size_t at, const struct cloud *c,
+                                            double relative)
+{
+    const struct skin_block *b = &s->block[at];
+    size_t first = at * BLOCK, n = smaller(BLOCK, c->n - first);
+    size_t columns = (size_t)s->dim + 1;
+    const uint16_t *code = s->code + at * columns * BLOCK;
+
+    if (b->exact != EXACT_NO) {
+        return exact_change(s->exact + b->exact * columns * BLOCK, c, first, n, relative);
+    }
+    switch (s->dim) {
+    case 1:
+        return coded_change(b, code, c, first, n, relative, 1);
+    case 2:
+        return coded_change(b, code, c, first, n, relative, 2);
+    default:
+        return coded_change(b, code, c, first, n, relative, 3);
+    }
+}
+
+/* -- For this processor ------------------------------------------------------------------------ */
+
+/* The loops over a block's particles. */
+struct skin_calls {
+    void (*measure)(struct skin_block *b, const struct cloud *c, size_t first, size_t n);
+    void (*encode)(const struct skin_block *b, const struct cloud *c, size_t first, size_t n,
+                   uint16_t *code);
+    struct skin_change (*change)(const struct skin *s, size_t at, const struct cloud *c,
+                                 double relative);
+};
+
+#define SKIN_CALLS(name, target)                                                                   \
+    target static void measure_##name(struct skin_block *b, const struct cloud *c, size_t first,   \
+                                      size_t n)                                                    \
+    {                                                                                              \
+        block_measure(b, c, first, n);                                                             \
+    }                                                                                              \
+    target static void encode_##name(const struct skin_block *b, const struct cloud *c,            \
+                                     size_t first, size_t n, uint16_t *code)                       \
+    {                                                                                              \
+        block_encode(b, c, first, n, code);                                                        \
+    }                                                                                              \
+    target static struct skin_change change_##name(const struct skin *s, size_t at,                \
+                                                   const struct cloud *c, double relative)         \
+    {                                                                                              \
+        return block_change(s, at, c, relative);                                                   \
+    }                                                                                              \
+    static const struct skin_calls calls_##name = {measure_##name, encode_##name, change_##name};
+
+SKIN_CALLS(plain, )
 #if defined(__x86_64__) && defined(__GNUC__)
-__attribute__((target("avx2"))) static struct skin_change
-change_avx2(const struct skin *s, size_t at, const struct cloud *c, double relative)
-{
-    return block_change(s, at, c, relative);
-}
+SKIN_CALLS(avx2, __attribute__((target("avx2"))))
 
-static change_fn *change_best(void)
+static const struct skin_calls *calls_best(void)
 {
-    return __builtin_cpu_supports("avx2") ? change_avx2 : change_plain;
+    return __builtin_cpu_supports("avx2") ? &calls_avx2 : &calls_plain;
 }
 #else
-static change_fn *change_best(void)
+static const struct skin_calls *calls_best(void)
 {
-    return change_plain;
+    return &calls_plain;
 }
 #endif
+
+/* -- All blocks -------------------------------------------------------------------------------- */
+
+int skin_keep(struct skin *s, const struct cloud *c, int threads, struct error *e)
+{
+    const struct skin_calls *calls = calls_best();
+    size_t columns = (size_t)c->dim + 1;
+
+    if (s->dim != c->dim) {
+        skin_fini(s);
+    }
+    (void)threads;
+    s->dim = c->dim;
+    s->n = c->n;
+    s->n_block = (c->n + BLOCK - 1) / BLOCK;
+    if (reserve_blocks(s, e) != 0) {
+        s->n = SIZE_MAX; /* holds for no cloud */
+        return -1;
+    }
+#pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
+    for (size_t b = 0; b < s->n_block; b++) {
+        calls->measure(&s->block[b], c, b * BLOCK, smaller(BLOCK, c->n - b * BLOCK));
+    }
+    if (reserve_exact(s, e) != 0) {
+        s->n = SIZE_MAX;
+        return -1;
+    }
+#pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
+    for (size_t b = 0; b < s->n_block; b++) {
+        const struct skin_block *block = &s->block[b];
+        size_t first = b * BLOCK, n = smaller(BLOCK, c->n - first);
+
+        if (block->exact == EXACT_NO) {
+            calls->encode(block, c, first, n, s->code + b * columns * BLOCK);
+        } else {
+            block_copy(c, first, n, s->exact + block->exact * columns * BLOCK);
+        }
+    }
+    return 0;
+}
 
 struct skin_change skin_change(const struct skin *s, const struct cloud *c, double relative,
                                int threads)
 {
     double moved = 0, room = INFINITY, none = 0;
-    change_fn *change = change_best();
+    const struct skin_calls *calls = calls_best();
 
     (void)threads;
     if (s->n != c->n || (c->n > 0 && s->dim != c->dim)) {
@@ -296,7 +360,7 @@ struct skin_change skin_change(const struct skin *s, const struct cloud *c, doub
 #pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)                    \
     reduction(max : moved) reduction(min : room) reduction(+ : none)
     for (size_t b = 0; b < s->n_block; b++) {
-        struct skin_change here = change(s, b, c, relative);
+        struct skin_change here = calls->change(s, b, c, relative);
 
         moved = here.moved > moved ? here.moved : moved;
         room = here.room < room ? here.room : room;

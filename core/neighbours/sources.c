@@ -2,6 +2,8 @@
  * Reads the clouds; owns the copies. */
 #include "neighbours/sources.h"
 
+#include "neighbours/range.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -10,48 +12,78 @@
 
 #define FAR 1e150 /* squares of distances must be numbers too */
 
+#define SLICES 64 /* that threads share; sums are the same for any number of threads */
+#define LANES 8
+
+/* What there is to know of h; `good` if all numbers of the points are numbers that can be. */
+struct survey {
+    double sum, most;
+    bool good;
+};
+
 /* A sum that is not finite if any of the values is too large or none: fast, and seldom bad. */
-static bool all_near(const double *x, size_t n)
+static double far_sum(const double *x, size_t n)
 {
-    double part[8] = {0}, sum = 0;
+    double part[LANES] = {0}, sum = 0;
     size_t i = 0;
 
-    for (; i + 8 <= n; i += 8) {
-        for (size_t k = 0; k < 8; k++) {
+    for (; i + LANES <= n; i += LANES) {
+        for (size_t k = 0; k < LANES; k++) {
             part[k] += x[i + k] * (1e308 / FAR);
         }
     }
     for (; i < n; i++) {
         sum += x[i] * (1e308 / FAR);
     }
-    for (size_t k = 0; k < 8; k++) {
+    for (size_t k = 0; k < LANES; k++) {
         sum += part[k];
     }
-    return isfinite(sum);
+    return sum;
 }
 
-static bool none_negative(const double *x, size_t n)
+static struct survey survey_slice(const struct cloud *c, size_t first, size_t n)
 {
-    int bad = 0;
+    struct survey s = {.good = true};
 
-    for (size_t i = 0; i < n; i++) {
-        bad |= x[i] < 0;
-    }
-    return !bad;
-}
-
-int cloud_check(const struct cloud *c, const char *role, struct error *e)
-{
-    bool good = !c->h || (all_near(c->h, c->n) && none_negative(c->h, c->n));
-
-    if (c->n > UINT32_MAX) {
-        return error_set(e, EXIT_RUN, "%zu %s particles: at most %u are possible", c->n, role,
-                         UINT32_MAX);
-    }
     for (int a = 0; a < c->dim; a++) {
-        good = good && all_near(c->x[a], c->n);
+        s.good = s.good && isfinite(far_sum(c->x[a] + first, n));
     }
-    for (size_t i = 0; i < c->n && !good; i++) {
+    if (c->h) {
+        double sum = far_sum(c->h + first, n);
+        struct range h = range_of(c->h + first, n, 1);
+
+        s.good = s.good && isfinite(sum) && !(h.least < 0);
+        s.most = h.most > 0 ? h.most : 0;
+        s.sum = sum / (1e308 / FAR);
+    }
+    return s;
+}
+
+/* Points [first, n). */
+static struct survey survey(const struct cloud *c, size_t first, int threads)
+{
+    size_t n = c->n - first, each = n / SLICES + 1;
+    struct survey slice[SLICES], all = {.good = true};
+
+    (void)threads;
+#pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1 && n > 4096)
+    for (size_t k = 0; k < SLICES; k++) {
+        size_t begin = k * each < n ? k * each : n;
+
+        slice[k] = survey_slice(c, first + begin, n - begin < each ? n - begin : each);
+    }
+    for (size_t k = 0; k < SLICES; k++) {
+        all.sum += slice[k].sum;
+        all.most = slice[k].most > all.most ? slice[k].most : all.most;
+        all.good = all.good && slice[k].good;
+    }
+    return all;
+}
+
+/* Finds the point that spoils a cloud that is not good; 0 if there is none after all. */
+static int find_bad(const struct cloud *c, const char *role, struct error *e)
+{
+    for (size_t i = 0; i < c->n; i++) {
         for (int a = 0; a < c->dim; a++) {
             if (!(fabs(c->x[a][i]) < FAR)) {
                 return error_set(e, EXIT_RUN, "%s particle %zu is nowhere: its %c is %g", role, i,
@@ -66,27 +98,25 @@ int cloud_check(const struct cloud *c, const char *role, struct error *e)
     return 0;
 }
 
+static int check(const struct cloud *c, size_t first, const char *role, int threads,
+                 struct survey *s, struct error *e)
+{
+    if (c->n > UINT32_MAX) {
+        return error_set(e, EXIT_RUN, "%zu %s particles: at most %u are possible", c->n, role,
+                         UINT32_MAX);
+    }
+    *s = survey(c, first, threads);
+    return s->good ? 0 : find_bad(c, role, e);
+}
+
+int cloud_check(const struct cloud *c, const char *role, int threads, struct error *e)
+{
+    struct survey s;
+
+    return check(c, 0, role, threads, &s, e);
+}
+
 /* -- Sources ----------------------------------------------------------------------------------- */
-
-static double largest_h(const struct cloud *c)
-{
-    double h = 0;
-
-    for (size_t i = 0; i < c->n; i++) {
-        h = c->h[i] > h ? c->h[i] : h;
-    }
-    return h;
-}
-
-static double mean_h(const struct cloud *c)
-{
-    double sum = 0;
-
-    for (size_t i = 0; i < c->n; i++) {
-        sum += c->h[i];
-    }
-    return c->n > 0 ? sum / (double)c->n : 0;
-}
 
 /* Whether a leaf is much larger than a reach. */
 static bool leaf_scattered(const struct sources *s, size_t leaf)
@@ -111,13 +141,13 @@ static bool leaf_scattered(const struct sources *s, size_t leaf)
     return false;
 }
 
-/* Whether the points stand in an order that is worth nothing, by one leaf in seven. Too few points
- * are not worth an order either. */
+/* Whether the points stand in an order that is worth nothing, by one leaf in seven, and fewer where
+ * there are many. Too few points are not worth an order either. */
 static bool scattered(const struct sources *s)
 {
-    size_t bad = 0, tried = 0;
+    size_t bad = 0, tried = 0, stride = 7 + s->n_leaf / 4096;
 
-    for (size_t leaf = 0; leaf < s->n_leaf && s->n_leaf > 64; leaf += 7) {
+    for (size_t leaf = 0; leaf < s->n_leaf && s->n_leaf > 64; leaf += stride) {
         bad += leaf_scattered(s, leaf);
         tried++;
     }
@@ -156,15 +186,27 @@ static int reorder(struct sources *s, const struct cloud *c, int threads, struct
 int sources_make(struct sources *s, const struct cloud *dst, const struct cloud *src,
                  bool symmetric, double factor, int threads, struct error *e)
 {
-    double asked = factor * dst->scale * largest_h(dst);
+    struct survey to, from;
+    double asked;
+    /* The sources may be the destinations, with ghosts behind them. */
+    bool same = dst->n <= src->n && dst->h == src->h;
 
     memset(s, 0, sizeof *s);
+    for (int a = 0; a < src->dim; a++) {
+        same = same && dst->x[a] == src->x[a];
+    }
+    if (check(dst, 0, "destination", threads, &to, e) != 0 ||
+        check(src, same ? dst->n : 0, "source", threads, &from, e) != 0) {
+        return -1;
+    }
+    from.most = same && to.most > from.most ? to.most : from.most;
+    asked = factor * dst->scale * to.most;
     s->dim = src->dim;
     s->n = src->n;
     s->n_leaf = (s->n + LEAF - 1) / LEAF;
     s->scale = symmetric ? factor * src->scale : 0;
-    s->largest = symmetric ? s->scale * largest_h(src) : 0;
-    s->typical = factor * dst->scale * mean_h(dst);
+    s->largest = symmetric ? s->scale * from.most : 0;
+    s->typical = dst->n > 0 ? factor * dst->scale * to.sum / (double)dst->n : 0;
     s->query = asked > s->largest ? asked : s->largest;
     s->h = src->h;
     for (int a = 0; a < s->dim; a++) {
@@ -184,16 +226,12 @@ void sources_free(struct sources *s)
     memset(s, 0, sizeof *s);
 }
 
-void sources_bounds(const struct sources *s, double *lo, double *hi)
+void sources_bounds(const struct sources *s, int threads, double *lo, double *hi)
 {
     for (int a = 0; a < s->dim; a++) {
-        lo[a] = INFINITY;
-        hi[a] = -INFINITY;
-        for (size_t i = 0; i < s->n; i++) {
-            double x = s->x[a][i];
+        struct range r = range_of(s->x[a], s->n, threads);
 
-            lo[a] = x < lo[a] ? x : lo[a];
-            hi[a] = x > hi[a] ? x : hi[a];
-        }
+        lo[a] = r.least;
+        hi[a] = r.most;
     }
 }

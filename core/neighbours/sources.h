@@ -36,14 +36,14 @@ struct query {
     double lo[3], hi[3], reach;
 };
 
-/* Clouds as in group_list_make; `factor` enlarges every reach. The clouds must outlive the
- * sources. */
+/* Clouds as in group_list_make, which are checked; `factor` enlarges every reach. The clouds must
+ * outlive the sources. */
 int sources_make(struct sources *s, const struct cloud *dst, const struct cloud *src,
                  bool symmetric, double factor, int threads, struct error *e);
 void sources_free(struct sources *s);
-void sources_bounds(const struct sources *s, double *lo, double *hi);
+void sources_bounds(const struct sources *s, int threads, double *lo, double *hi);
 
 /* Fails with the first point whose position is not finite, or whose h is negative or not finite. */
-int cloud_check(const struct cloud *c, const char *role, struct error *e);
+int cloud_check(const struct cloud *c, const char *role, int threads, struct error *e);
 
 #endif

@@ -12,8 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define BUNDLE_MOST 16    /* groups in a bundle */
-#define BUNDLE_SPREAD 2.5 /* half the diagonal of a bundle's box, in units of its smallest reach */
+#define BUNDLE_MOST 32    /* groups in a bundle */
+#define BUNDLE_SPREAD 3.0 /* half the diagonal of a bundle's box, in units of its smallest reach */
 
 /* Destinations [first, last) that are looked after together. */
 struct stretch {
@@ -132,17 +132,17 @@ static void stretch_init(struct stretch *s, const struct job *j, size_t first, s
     }
 }
 
-/* Half the diagonal of the box. */
-static double stretch_radius(const struct stretch *s)
+/* Whether half the diagonal of the box is at most so many times the smallest reach. */
+static bool stretch_within(const struct stretch *s, double reaches)
 {
-    double sum = 0;
+    double sum = 0, most = 2 * reaches * s->least;
 
     for (int a = 0; a < 3; a++) {
         double d = s->q.hi[a] - s->q.lo[a];
 
         sum += d * d;
     }
-    return sqrt(sum) / 2;
+    return sum <= most * most;
 }
 
 /* Makes `both` of two spans that stand side by side. */
@@ -274,11 +274,26 @@ static void put(const struct job *j, struct worker *w, size_t group)
 
 /* -- Groups ------------------------------------------------------------------------------------ */
 
-static void group_stretch(struct stretch *s, const struct job *j, size_t group)
+/* Eight groups are measured at a time. */
+static void group_stretch(struct stretch *s, const struct job *j, struct worker *w, size_t group)
 {
-    size_t first = group * LANES, n = j->dst->n;
+    const struct cloud *c = j->dst;
+    size_t k = group % LEAF, first = group * LANES;
 
-    stretch_init(s, j, first, first + LANES < n ? first + LANES : n);
+    if (group / LEAF != w->eight_at) {
+        struct points p = {.x = c->x, .h = c->h, .scale = j->scale, .n = c->n, .dim = c->dim};
+
+        j->filter->eight(&w->eight, w->least, &p, group - k);
+        w->eight_at = group / LEAF;
+    }
+    s->first = first;
+    s->last = first + LANES < c->n ? first + LANES : c->n;
+    s->least = w->least[k];
+    s->q.reach = w->eight.reach[k];
+    for (int a = 0; a < 3; a++) {
+        s->q.lo[a] = w->eight.lo[a][k];
+        s->q.hi[a] = w->eight.hi[a][k];
+    }
 }
 
 /* A group whose lanes are far apart, piece by piece. */
@@ -295,7 +310,7 @@ static void group_in_pieces(const struct job *j, struct worker *w, size_t group)
         for (size_t i = first + 1; i < last; i++) {
             stretch_init(&more, j, i, i + 1);
             stretch_join(&both, &piece, &more);
-            if (stretch_radius(&both) > both.least) {
+            if (!stretch_within(&both, 1)) {
                 break;
             }
             piece = both;
@@ -330,17 +345,17 @@ void worker_make(const struct job *j, struct worker *w, size_t first, size_t las
 {
     struct stretch s, next, both;
 
-    group_stretch(&next, j, first);
+    w->eight_at = SIZE_MAX;
+    group_stretch(&next, j, w, first);
     for (size_t group = first; group < last && !w->no_memory;) {
         size_t end = group + 1;
-        bool whole = stretch_radius(&next) <= SPREAD_MOST * next.least;
+        bool whole = stretch_within(&next, SPREAD_MOST);
 
         s = next;
         for (; end < last; end++) {
-            group_stretch(&next, j, end);
+            group_stretch(&next, j, w, end);
             stretch_join(&both, &s, &next);
-            if (!whole || end - group == BUNDLE_MOST ||
-                stretch_radius(&both) > BUNDLE_SPREAD * both.least) {
+            if (!whole || end - group == BUNDLE_MOST || !stretch_within(&both, BUNDLE_SPREAD)) {
                 break;
             }
             s = both;

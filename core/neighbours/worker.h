@@ -29,6 +29,9 @@ struct worker {
     struct packed_leaf *pack;
     struct packed_box8 *box;
     size_t n_leaf, leaf_capacity;
+    struct box8 eight; /* boxes of groups 8 eight_at and on */
+    double least[LEAF];
+    size_t eight_at;
     struct bitset near, unsorted; /* leaves near a query; sources of a group */
     uint64_t visited, candidates;
     bool no_memory;

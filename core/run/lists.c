@@ -1,6 +1,9 @@
 /* run/lists.c -- neighbour lists and ghosts of a run: made when they are no longer right, reused until then.
  * Everything is decided by displacements and counters, never by time, so that a run repeats itself. */
 #include "run/run.h"
+
+#include "neighbours/range.h"
+
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>
@@ -115,13 +118,13 @@ static double largest_overshoot(const struct run *r)
     for (size_t a = 0; box->bounded && a < r->plan->n_array; a++)
         for (int c = 0; c < r->plan->dim; c++) {
             const struct plan_array *pa = &r->plan->array[a];
-            const double *x = plane_of(pa, pa->position, c);
-            for (size_t i = 0; i < pa->p.n; i++) {
-                if (box->side[c][0] != SIDE_OPEN)
-                    most = fmax(most, box->min[c] - x[i]);
-                if (box->side[c][1] != SIDE_OPEN)
-                    most = fmax(most, x[i] - box->max[c]);
-            }
+            if (box->side[c][0] == SIDE_OPEN && box->side[c][1] == SIDE_OPEN)
+                continue;
+            const struct range x = range_of(plane_of(pa, pa->position, c), pa->p.n, r->threads);
+            if (box->side[c][0] != SIDE_OPEN)
+                most = fmax(most, box->min[c] - x.least);
+            if (box->side[c][1] != SIDE_OPEN)
+                most = fmax(most, x.most - box->max[c]);
         }
     return most;
 }
@@ -130,13 +133,9 @@ static void find_range_of_h(struct run *r)
 {
     for (size_t a = 0; a < r->plan->n_array; a++) {
         const struct plan_array *pa = &r->plan->array[a];
-        const double *h = pa->p.column[pa->smoothing].data;
-        r->h_low[a] = INFINITY;
-        r->h_high[a] = 0.0;
-        for (size_t i = 0; i < pa->p.n; i++) {
-            r->h_low[a] = h[i] < r->h_low[a] ? h[i] : r->h_low[a];
-            r->h_high[a] = h[i] > r->h_high[a] ? h[i] : r->h_high[a];
-        }
+        const struct range h = range_of(pa->p.column[pa->smoothing].data, pa->p.n, r->threads);
+        r->h_low[a] = h.least;
+        r->h_high[a] = fmax(h.most, 0.0);
     }
 }
 

@@ -28,7 +28,8 @@ struct skin_change {
     double room;  /* the least of (1 + skin) * reach then - reach now */
 };
 
-/* Begin with zeros; keeping again uses the memory again. */
+/* Begin with zeros; keeping again uses the memory again. A change is also told of a cloud whose h is NULL:
+ * its h are what they were. */
 int skin_keep(struct skin *s, const struct cloud *c, int threads, struct error *e);
 struct skin_change skin_change(const struct skin *s, const struct cloud *c, double relative,
                                int threads);

@@ -175,6 +175,9 @@ size_t plan_bytes(const struct plan *plan, size_t array);
 bool pass_writes(const struct pass *p, size_t array, int column);
 bool pass_reads_source(const struct pass *p, size_t array, int column);
 
+/* Whether anything changes the column as the run goes on: a pass, or the integrator. */
+bool plan_changes(const struct plan *plan, size_t array, int column);
+
 /* For people (80 columns) and for machines. */
 void plan_print(const struct plan *plan, FILE *out);
 cJSON *plan_json(const struct plan *plan);

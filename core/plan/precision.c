@@ -41,15 +41,21 @@ static void keep_doubles(struct plan *plan, bool **doubles)
     for (size_t i = 0; i < plan->n_pass; i++) {
         const struct pass *p = &plan->pass[i];
         const sph_population *d = p->use.entry ? p->use.entry->population : NULL;
-        if (p->shape == SPH_PAIR && p->real == SPH_F64)
+        if (p->shape == SPH_PAIR && p->real == SPH_F64) {
             mark(p, doubles);
+            mark_geometry(plan, p, doubles);
+        }
         for (uint32_t k = 0; d && k < d->born_props.count; k++) {
             const sph_prop *prop = list_at(&d->born_props, k);
             doubles[p->dst.array][particles_find(&plan->array[p->dst.array].p, prop->name)] = true;
         }
     }
-    for (size_t a = 0; a < plan->n_array; a++)
-        doubles[a][plan->array[a].position] = doubles[a][plan->array[a].smoothing] = true;
+    /* Neighbours are looked for in doubles. An h that stays as it is can be laid out in them for that. */
+    for (size_t a = 0; a < plan->n_array; a++) {
+        const int h = plan->array[a].smoothing;
+        doubles[a][plan->array[a].position] = true;
+        doubles[a][h] = doubles[a][h] || plan->n_frame > 1 || plan_changes(plan, a, h);
+    }
 }
 
 static void decide(const struct plan *plan, struct plan_array *a, const bool *floats,

@@ -50,6 +50,14 @@ static bool in_floats(const struct work *w, uint32_t k)
     return column_is_real(c) && c->size == sizeof(float);
 }
 
+/* The smoothing length of the destinations, if it is held in floats and the pass is given it. */
+static const struct column *h_in_floats(const struct work *w)
+{
+    const struct plan_array *a = &w->r->plan->array[w->p->dst.array];
+    const struct column *h = &a->p.column[a->smoothing];
+    return w->p->shape == SPH_PAIR && h->size == sizeof(float) ? h : NULL;
+}
+
 #define WRITES (SPH_DST_WRITE | SPH_DST_SUM | SPH_DST_MAX | SPH_DST_MIN)
 #define SUMS (SPH_DST_SUM | SPH_DST_MAX | SPH_DST_MIN)
 
@@ -103,9 +111,15 @@ static void collect(const struct work *w, uint64_t first, uint64_t count)
 /* Doubles of a chunk of what is held in floats: laid out so that element i of the view is particle i. Of what
  * is only written the old values are not looked for, but by a pass that iterates, which may leave some. */
 static void lay_out(const struct work *w, char *scratch, uint64_t first, uint64_t count,
-                    sph_column *view)
+                    sph_column *view, sph_column *h_view)
 {
+    const struct column *h = h_in_floats(w);
     double *at = (double *)(void *)scratch;
+    if (h) {
+        column_load(h, 0, first, count, at);
+        h_view->data = (void *)((uintptr_t)at - first * sizeof(double));
+        at += STRIDE;
+    }
     for (uint32_t k = 0; k < n_prop(w); k++) {
         const struct column *c = &destinations(w)->column[w->p->dst.column[k]];
         const uint32_t access = prop_at(w, k)->access;
@@ -123,7 +137,7 @@ static void lay_out(const struct work *w, char *scratch, uint64_t first, uint64_
 
 static void put_back(const struct work *w, const char *scratch, uint64_t first, uint64_t count)
 {
-    const double *at = (const double *)(const void *)scratch;
+    const double *at = (const double *)(const void *)scratch + (h_in_floats(w) ? STRIDE : 0);
     for (uint32_t k = 0; k < n_prop(w); k++) {
         const struct column *c = &destinations(w)->column[w->p->dst.column[k]];
         if (!in_floats(w, k))
@@ -144,7 +158,7 @@ static sph_status alone(const struct work *w, sph_range_fn f, char *scratch, uin
         return f(&b);
     sph_column *view = (sph_column *)(void *)scratch;
     char *room = scratch + (n_prop(w) * sizeof *view + 63) / 64 * 64;
-    lay_out(w, room, first, count, view);
+    lay_out(w, room, first, count, view, &b.h_dst);
     b.dst = view;
     const sph_status status = f(&b);
     put_back(w, room, first, count);
@@ -296,7 +310,7 @@ static void batch_pair(struct work *w, size_t s)
 
 static int make_room(struct work *w, struct error *e)
 {
-    size_t doubles = 0;
+    size_t doubles = h_in_floats(w) ? STRIDE : 0;
     for (uint32_t k = 0; k < n_prop(w); k++)
         if (w->p->dst.column[k] >= 0 && in_floats(w, k))
             doubles += (size_t)destinations(w)->column[w->p->dst.column[k]].ncomp * STRIDE;

@@ -56,10 +56,39 @@ static struct cloud cloud_of(const struct run *r, size_t array, size_t frame, bo
     const struct plan_array *a = &r->plan->array[array];
     struct cloud cloud = {.dim = r->plan->dim, .scale = support(r->plan)};
     cloud.n = a->p.n + (ghosts ? a->p.n_ghost : 0);
-    cloud.h = a->p.column[reach_in(r, frame, array)].data;
+    const struct column *h = &a->p.column[reach_in(r, frame, array)];
+    cloud.h = h->size == sizeof(double) ? h->data : r->wide_h[array];
     for (int c = 0; c < r->plan->dim; c++)
         cloud.x[c] = plane_of(a, place_in(r, frame, array), c);
     return cloud;
+}
+
+/* Whoever makes lists and ghosts wants h in doubles. Where it is held in floats, which is where nothing
+ * changes it, they are there while it does; in between clouds have no h, and it counts as unchanged. */
+static int widen_h(struct run *r, struct error *e)
+{
+    for (size_t a = 0; a < r->plan->n_array; a++) {
+        const struct particles *p = &r->plan->array[a].p;
+        const struct column *h = &p->column[r->plan->array[a].smoothing];
+        const size_t n = p->n + p->n_ghost;
+        if (h->size == sizeof(double))
+            continue;
+        double *wide = realloc(r->wide_h[a], (n + PARTICLES_PAD) * sizeof *wide);
+        if (!wide)
+            return error_memory(e, "smoothing lengths", n * sizeof *wide);
+        column_load(h, 0, 0, n, wide);
+        memset(wide + n, 0, PARTICLES_PAD * sizeof *wide);
+        r->wide_h[a] = wide;
+    }
+    return 0;
+}
+
+static void forget_h(struct run *r)
+{
+    for (size_t a = 0; a < r->plan->n_array; a++) {
+        free(r->wide_h[a]);
+        r->wide_h[a] = NULL;
+    }
 }
 
 /* The arrays that take part in a frame: their clouds; how many. */
@@ -133,7 +162,7 @@ static void find_range_of_h(struct run *r)
 {
     for (size_t a = 0; a < r->plan->n_array; a++) {
         const struct plan_array *pa = &r->plan->array[a];
-        const struct range h = range_of(pa->p.column[pa->smoothing].data, pa->p.n, r->threads);
+        const struct range h = range_of(cloud_of(r, a, 0, false).h, pa->p.n, r->threads);
         r->h_low[a] = h.least;
         r->h_high[a] = fmax(h.most, 0.0);
     }
@@ -190,8 +219,10 @@ static int make_frame(struct run *r, size_t frame, bool counted, struct error *e
  * yet to be set. They stay right while the particles stand as they stood. */
 static int make_lists(struct run *r, bool sorted, struct error *e)
 {
+    if (widen_h(r, e)) /* they stand in another order now */
+        return -1;
     find_range_of_h(r);
-    if (make_ghosts(r, e))
+    if (make_ghosts(r, e) || widen_h(r, e))
         return -1;
     if (sorted || !r->lists_made)
         memset(r->frame_made, false, r->plan->n_frame);
@@ -245,6 +276,8 @@ int run_lists(struct run *r, bool within, struct error *e)
         if (!within) {
             for (size_t a = 0; a < r->plan->n_array; a++)
                 sides_wrap(&r->plan->scene->box, &r->plan->array[a].p);
+            if (sort)
+                status = widen_h(r, e);
             for (size_t a = 0; !status && sort && a < r->plan->n_array; a++)
                 status = sort_array(r, a, e);
             if (sort) {
@@ -254,6 +287,7 @@ int run_lists(struct run *r, bool within, struct error *e)
         }
         if (!status)
             status = make_lists(r, sort, e);
+        forget_h(r);
         r->lists_made = !status;
         r->cost.list_builds++;
     }

@@ -48,15 +48,9 @@ static int hold(struct plan *plan, struct error *e)
 
 static bool changes_h(const struct plan *plan)
 {
-    for (size_t a = 0; a < plan->n_array; a++) {
-        const struct plan_array *pa = &plan->array[a];
-        for (size_t k = 0; k < pa->n_rate; k++)
-            if (pa->rate[k].property == pa->smoothing)
-                return true;
-        for (size_t i = 0; i < plan->n_pass; i++)
-            if (pass_writes(&plan->pass[i], a, pa->smoothing))
-                return true;
-    }
+    for (size_t a = 0; a < plan->n_array; a++)
+        if (plan_changes(plan, a, plan->array[a].smoothing))
+            return true;
     return false;
 }
 
@@ -79,11 +73,12 @@ int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool 
     r->frozen = calloc(plan->n_frame + 1, sizeof *r->frozen);
     r->stale = calloc(n + 1, sizeof *r->stale);
     r->mirror_old = calloc(n + 1, sizeof *r->mirror_old);
+    r->wide_h = calloc(n + 1, sizeof *r->wide_h);
     r->h_low = calloc(2 * n + 1, sizeof *r->h_low);
     r->h_high = r->h_low + n;
     r->reduced = calloc(plan->n_reduction + 1, sizeof *r->reduced);
     if (!r->ghosts || !r->list || !r->kept || !r->cloud || !r->frame_made || !r->frozen ||
-        !r->stale || !r->mirror_old || !r->h_low || !r->reduced)
+        !r->stale || !r->mirror_old || !r->wide_h || !r->h_low || !r->reduced)
         return error_memory(e, "the run", n * n * sizeof *r->list);
     for (size_t i = 0; i < plan->n_reduction; i++)
         r->reduced[i] = NAN;
@@ -111,6 +106,8 @@ void run_free(struct run *r)
             free(r->stale[a]);
         if (r->mirror_old)
             free(r->mirror_old[a]);
+        if (r->wide_h)
+            free(r->wide_h[a]);
     }
     for (size_t k = 0; r->kept && k < n * r->plan->n_frame; k++)
         skin_fini(&r->kept[k]);
@@ -124,6 +121,7 @@ void run_free(struct run *r)
     free(r->frozen);
     free(r->stale);
     free(r->mirror_old);
+    free(r->wide_h);
     free(r->h_low);
     free(r->reduced);
     *r = (struct run){0};

@@ -45,6 +45,7 @@ struct run {
     uint8_t **mirror_old;      /* [array][column]: the mirror does: MIRROR_... */
     double centre[3], quantum; /* of positions' mirrors: x = centre + quantum * a whole number */
     bool h_fixed;              /* no pass and no rate changes any h */
+    double **wide_h;           /* [array]: of h held in floats, in doubles while lists are made */
     double *h_low, *h_high;    /* [array]: range of h when the lists were made, ghosts included */
     bool lists_made,
         lists_suspect; /* suspect: something moved or grew since they were last checked */

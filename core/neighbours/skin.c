@@ -376,6 +376,17 @@ struct skin_change skin_change(const struct skin *s, const struct cloud *c, doub
     return (struct skin_change){moved + none, room};
 }
 
+struct skin skin_part(const struct skin *s, size_t first, size_t n)
+{
+    struct skin part = *s;
+
+    part.n = n;
+    part.n_block = (n + BLOCK - 1) / BLOCK;
+    part.block += first / BLOCK;
+    part.code += first / BLOCK * (size_t)(s->dim + 1) * BLOCK;
+    return part;
+}
+
 bool skin_holds(const struct skin *s, const struct cloud *c, size_t n, double relative, int threads)
 {
     double moved = 0, room = INFINITY;

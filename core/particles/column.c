@@ -51,12 +51,33 @@ CLONES static void split(float *restrict high, float *restrict low, const double
     }
 }
 
+CLONES static void from_quanta(double *restrict to, const int32_t *restrict whole,
+                               const float *restrict rest, double centre, double quantum, size_t n)
+{
+    CLONES_SIMD
+    for (size_t i = 0; i < n; i++)
+        to[i] = centre + quantum * ((double)whole[i] + (double)rest[i]);
+}
+
+CLONES static void to_quanta(int32_t *restrict whole, float *restrict rest,
+                             const double *restrict from, double centre, double inverse, size_t n)
+{
+    CLONES_SIMD
+    for (size_t i = 0; i < n; i++) {
+        const double quanta = (from[i] - centre) * inverse;
+        whole[i] = quanta_whole(quanta);
+        rest[i] = (float)(quanta - (double)whole[i]);
+    }
+}
+
 void column_load(const struct column *c, uint32_t k, size_t first, size_t n, double *to)
 {
     const size_t at = k * c->plane + first;
 
     if (c->size == sizeof(double))
         memcpy(to, (const double *)c->data + at, n * sizeof *to);
+    else if (c->quantum > 0.0)
+        from_quanta(to, (const int32_t *)c->data + at, c->low + at, c->centre[k], c->quantum, n);
     else if (c->low)
         join(to, (const float *)c->data + at, c->low + at, n);
     else
@@ -69,6 +90,8 @@ void column_store(const struct column *c, uint32_t k, size_t first, size_t n, co
 
     if (c->size == sizeof(double))
         memcpy((double *)c->data + at, from, n * sizeof *from);
+    else if (c->quantum > 0.0)
+        to_quanta((int32_t *)c->data + at, c->low + at, from, c->centre[k], 1.0 / c->quantum, n);
     else if (c->low)
         split((float *)c->data + at, c->low + at, from, n);
     else

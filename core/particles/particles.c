@@ -326,14 +326,15 @@ double *particles_real(const struct particles *p, const char *name, uint32_t c)
     return (double *)p->column[k].data + c * p->column[k].plane;
 }
 
-int particles_hold(struct particles *p, int column, size_t size, bool rest, struct error *e)
+/* The column takes the form that `c` has but for its memory; its values go over. */
+static int change_form(struct particles *p, struct column *c, const struct column *form, bool rest,
+                       struct error *e)
 {
-    struct column *c = &p->column[column], old = *c;
+    enum { PIECE = 256 };
+    struct column old = *c;
+    double value[PIECE];
 
-    if (c->size == size && rest == (c->low != NULL)) {
-        return 0;
-    }
-    c->size = size;
+    *c = *form;
     c->data = c->mirror = NULL;
     c->low = NULL;
     if (column_grow(p, c, p->capacity, 0, rest, e) != 0) {
@@ -341,12 +342,38 @@ int particles_hold(struct particles *p, int column, size_t size, bool rest, stru
         return -1;
     }
     for (uint32_t k = 0; k < c->ncomp; k++) {
-        for (size_t i = 0; i < p->n + p->n_ghost; i++) {
-            column_set(c, k, i, column_get(&old, k, i));
+        for (size_t i = 0, n = p->n + p->n_ghost; i < n; i += PIECE) {
+            size_t some = n - i < PIECE ? n - i : PIECE;
+
+            column_load(&old, k, i, some, value);
+            column_store(c, k, i, some, value);
         }
     }
     column_release(p, &old);
     return 0;
+}
+
+int particles_hold(struct particles *p, int column, size_t size, bool rest, struct error *e)
+{
+    struct column *c = &p->column[column], form = *c;
+
+    if (c->size == size && rest == (c->low != NULL)) {
+        return 0;
+    }
+    form.size = size;
+    form.quantum = 0;
+    return change_form(p, c, &form, rest, e);
+}
+
+int particles_hold_quanta(struct particles *p, int column, const double *centre, double quantum,
+                          struct error *e)
+{
+    struct column *c = &p->column[column], form = *c;
+
+    form.size = 4;
+    form.quantum = quantum;
+    memcpy(form.centre, centre, sizeof form.centre);
+    return change_form(p, c, &form, true, e);
 }
 
 int particles_mirror(struct particles *p, int column, struct error *e)

@@ -4,7 +4,8 @@
  * column is 64-byte aligned and readable PARTICLES_PAD elements past `capacity`. A real column is
  * held in doubles, in floats, or in two floats of which the second is what the first leaves out: 48 bits,
  * of which sweeps in floats read the first half as it stands. One in doubles may have a mirror besides:
- * a copy of 4-byte elements, which whoever reads it keeps up to date. Knows nothing of neighbours, scenes or
+ * a copy of 4-byte elements, which whoever reads it keeps up to date. Positions may be held in whole
+ * numbers of a quantum and a float for the rest, of which such sweeps read the first. Knows nothing of neighbours, scenes or
  * physics. */
 #ifndef PARTICLES_PARTICLES_H
 #define PARTICLES_PARTICLES_H
@@ -30,8 +31,10 @@ struct column {
                      * Others are made anew at each evaluation. */
     bool output;    /* goes to snapshots */
     void *data;
-    float *low;   /* NULL, or of a real in floats: what they leave out; value = data + low */
-    void *mirror; /* NULL, or as many elements of 4 bytes; ghosts included */
+    float *low; /* NULL, or of a real in floats: what they leave out; value = data + low */
+    double quantum,
+        centre[3]; /* quantum > 0: data are int32_t, value = centre + quantum (data + low) */
+    void *mirror;  /* NULL, or as many elements of 4 bytes; ghosts included */
 };
 
 static inline bool column_is_real(const struct column *c)
@@ -52,8 +55,22 @@ static inline double column_get(const struct column *c, uint32_t k, size_t i)
     const size_t at = k * c->plane + i;
     if (c->size == sizeof(double))
         return ((const double *)c->data)[at];
+    if (c->quantum > 0.0)
+        return c->centre[k] +
+               c->quantum * ((double)((const int32_t *)c->data)[at] + (double)c->low[at]);
     const double high = (double)((const float *)c->data)[at];
     return c->low ? high + (double)c->low[at] : high;
+}
+
+/* A number of quanta as a whole number and the rest: a difference of two whole ones has room. What is too
+ * far away, or no number, is all in the rest. */
+#define QUANTA_MOST 1073741823.0
+static inline int32_t quanta_whole(double quanta)
+{
+    double near = quanta + copysign(0.5, quanta);
+    near = near < QUANTA_MOST ? near : QUANTA_MOST;
+    near = near > -QUANTA_MOST ? near : -QUANTA_MOST;
+    return (int32_t)near;
 }
 
 static inline void column_set(const struct column *c, uint32_t k, size_t i, double value)
@@ -61,6 +78,13 @@ static inline void column_set(const struct column *c, uint32_t k, size_t i, doub
     const size_t at = k * c->plane + i;
     if (c->size == sizeof(double)) {
         ((double *)c->data)[at] = value;
+        return;
+    }
+    if (c->quantum > 0.0) {
+        const double quanta = (value - c->centre[k]) * (1.0 / c->quantum);
+        const int32_t whole = quanta_whole(quanta);
+        ((int32_t *)c->data)[at] = whole;
+        c->low[at] = (float)(quanta - (double)whole);
         return;
     }
     const float high = (float)value;
@@ -103,6 +127,9 @@ double *particles_real(const struct particles *p, const char *name, uint32_t c);
 /* From now on a real column is held in doubles (size 8) or floats (4), or with `rest` in two floats; its
  * values are kept, as well as that can be. What it pointed to is gone. */
 int particles_hold(struct particles *p, int column, size_t size, bool rest, struct error *e);
+/* From now on a column of positions is held in quanta. */
+int particles_hold_quanta(struct particles *p, int column, const double *centre, double quantum,
+                          struct error *e);
 /* Gives a column held in doubles a mirror; its contents are the caller's business. */
 int particles_mirror(struct particles *p, int column, struct error *e);
 

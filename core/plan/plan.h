@@ -124,6 +124,7 @@ struct plan_array {
     bool *in_floats; /* per column: held in floats while the run goes on ... */
     bool *in_two;    /* ... with a second float each for what the first leaves out ... */
     bool *mirrored;  /* ... or in doubles with a mirror in floats */
+    bool in_quanta;  /* the position: in quanta while neighbour lists hold */
     struct use eos;  /* of its material; entry NULL: none */
     int position, velocity, smoothing, mass,
         id; /* columns; velocity: the rate of the position, or -1 */

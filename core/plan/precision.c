@@ -35,6 +35,18 @@ static void mark_geometry(const struct plan *plan, const struct pass *p, bool **
     }
 }
 
+/* A pair pass writes it, or something is advanced with it. */
+static bool is_summed(const struct plan *plan, size_t array, int column)
+{
+    for (size_t i = 0; i < plan->n_pass; i++)
+        if (plan->pass[i].shape == SPH_PAIR && pass_writes(&plan->pass[i], array, column))
+            return true;
+    for (size_t k = 0; k < plan->array[array].n_rate; k++)
+        if (plan->array[array].rate[k].rate == column)
+            return true;
+    return false;
+}
+
 /* Columns whose doubles somebody needs: sums in doubles, particles that are born, the core. */
 static void keep_doubles(struct plan *plan, bool **doubles)
 {
@@ -50,10 +62,11 @@ static void keep_doubles(struct plan *plan, bool **doubles)
             doubles[p->dst.array][particles_find(&plan->array[p->dst.array].p, prop->name)] = true;
         }
     }
-    /* Neighbours are looked for in doubles. An h that stays as it is can be laid out in them for that. */
+    /* Neighbours are looked for in doubles. An h that stays as it is can be laid out in them for that; places
+     * go into doubles and back. */
     for (size_t a = 0; a < plan->n_array; a++) {
-        const int h = plan->array[a].smoothing;
-        doubles[a][plan->array[a].position] = true;
+        const int h = plan->array[a].smoothing, x = plan->array[a].position;
+        doubles[a][x] = doubles[a][x] || plan->n_frame > 1 || is_summed(plan, a, x);
         doubles[a][h] = doubles[a][h] || plan->n_frame > 1 || plan_changes(plan, a, h);
     }
 }
@@ -64,6 +77,10 @@ static void decide(const struct plan *plan, struct plan_array *a, const bool *fl
     for (size_t c = 0; c < a->p.n_column; c++) {
         if (!floats[c] || !column_is_real(&a->p.column[c]))
             continue;
+        if ((int)c == a->position && !doubles[c]) {
+            a->in_quanta = true;
+            continue;
+        }
         a->mirrored[c] = doubles[c];
         a->in_floats[c] = !doubles[c];
         for (size_t k = 0; plan->precision != PRECISION_SINGLE && k < a->n_rate; k++)

@@ -50,12 +50,19 @@ static bool in_floats(const struct work *w, uint32_t k)
     return column_is_real(c) && c->size == sizeof(float);
 }
 
-/* The smoothing length of the destinations, if it is held in floats and the pass is given it. */
-static const struct column *h_in_floats(const struct work *w)
+/* The column, if the pass is given it as the destinations' geometry and it is not held in doubles. */
+static const struct column *to_lay_out(const struct work *w, int column)
+{
+    const struct column *c = &destinations(w)->column[column];
+    return w->p->shape == SPH_PAIR && c->size == sizeof(float) ? c : NULL;
+}
+
+/* Doubles that this takes. */
+static size_t geometry_room(const struct work *w)
 {
     const struct plan_array *a = &w->r->plan->array[w->p->dst.array];
-    const struct column *h = &a->p.column[a->smoothing];
-    return w->p->shape == SPH_PAIR && h->size == sizeof(float) ? h : NULL;
+    const struct column *x = to_lay_out(w, a->position), *h = to_lay_out(w, a->smoothing);
+    return (size_t)((x ? x->ncomp : 0) + (h ? 1 : 0)) * STRIDE;
 }
 
 #define WRITES (SPH_DST_WRITE | SPH_DST_SUM | SPH_DST_MAX | SPH_DST_MIN)
@@ -108,36 +115,43 @@ static void collect(const struct work *w, uint64_t first, uint64_t count)
     }
 }
 
-/* Doubles of a chunk of what is held in floats: laid out so that element i of the view is particle i. Of what
- * is only written the old values are not looked for, but by a pass that iterates, which may leave some. */
-static void lay_out(const struct work *w, char *scratch, uint64_t first, uint64_t count,
-                    sph_column *view, sph_column *h_view)
+/* Of one column; behind it there is room again. No pointer is formed that points before its memory: whole
+ * numbers are. */
+static double *lay_out_one(const struct column *c, double *at, uint64_t first, uint64_t count,
+                           bool loads, sph_column *view)
 {
-    const struct column *h = h_in_floats(w);
+    for (uint32_t q = 0; loads && q < c->ncomp; q++)
+        column_load(c, q, first, count, at + q * STRIDE);
+    view->data = (void *)((uintptr_t)at - first * sizeof(double));
+    view->plane = STRIDE;
+    return at + (size_t)c->ncomp * STRIDE;
+}
+
+/* Doubles of a chunk of what is not held in them: laid out so that element i of the view is particle i. Of
+ * what is only written the old values are not looked for, but by a pass that iterates, which may leave
+ * some. */
+static void lay_out(const struct work *w, char *scratch, sph_column *view, sph_batch *b)
+{
+    const struct plan_array *a = &w->r->plan->array[w->p->dst.array];
+    const struct column *x = to_lay_out(w, a->position), *h = to_lay_out(w, a->smoothing);
     double *at = (double *)(void *)scratch;
-    if (h) {
-        column_load(h, 0, first, count, at);
-        h_view->data = (void *)((uintptr_t)at - first * sizeof(double));
-        at += STRIDE;
-    }
+    if (x)
+        at = lay_out_one(x, at, b->first, b->count, true, &b->x_dst);
+    if (h)
+        at = lay_out_one(h, at, b->first, b->count, true, &b->h_dst);
     for (uint32_t k = 0; k < n_prop(w); k++) {
         const struct column *c = &destinations(w)->column[w->p->dst.column[k]];
-        const uint32_t access = prop_at(w, k)->access;
+        const bool loads = w->p->max_sweeps || prop_at(w, k)->access != SPH_DST_WRITE;
         view[k] = w->alone.dst[k];
-        if (!in_floats(w, k))
-            continue;
-        for (uint32_t q = 0; q < c->ncomp && (w->p->max_sweeps || access != SPH_DST_WRITE); q++)
-            column_load(c, q, first, count, at + q * STRIDE);
-        /* No pointer is formed that points before its memory: whole numbers are. */
-        view[k].data = (void *)((uintptr_t)at - first * sizeof(double));
-        view[k].plane = STRIDE;
-        at += (size_t)c->ncomp * STRIDE;
+        if (in_floats(w, k))
+            at = lay_out_one(c, at, b->first, b->count, loads, &view[k]);
     }
+    b->dst = view;
 }
 
 static void put_back(const struct work *w, const char *scratch, uint64_t first, uint64_t count)
 {
-    const double *at = (const double *)(const void *)scratch + (h_in_floats(w) ? STRIDE : 0);
+    const double *at = (const double *)(const void *)scratch + geometry_room(w);
     for (uint32_t k = 0; k < n_prop(w); k++) {
         const struct column *c = &destinations(w)->column[w->p->dst.column[k]];
         if (!in_floats(w, k))
@@ -158,8 +172,7 @@ static sph_status alone(const struct work *w, sph_range_fn f, char *scratch, uin
         return f(&b);
     sph_column *view = (sph_column *)(void *)scratch;
     char *room = scratch + (n_prop(w) * sizeof *view + 63) / 64 * 64;
-    lay_out(w, room, first, count, view, &b.h_dst);
-    b.dst = view;
+    lay_out(w, room, view, &b);
     const sph_status status = f(&b);
     put_back(w, room, first, count);
     return status;
@@ -310,7 +323,7 @@ static void batch_pair(struct work *w, size_t s)
 
 static int make_room(struct work *w, struct error *e)
 {
-    size_t doubles = h_in_floats(w) ? STRIDE : 0;
+    size_t doubles = geometry_room(w);
     for (uint32_t k = 0; k < n_prop(w); k++)
         if (w->p->dst.column[k] >= 0 && in_floats(w, k))
             doubles += (size_t)destinations(w)->column[w->p->dst.column[k]].ncomp * STRIDE;

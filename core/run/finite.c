@@ -63,7 +63,8 @@ static bool find_bad(const struct plan_array *a, int column, bool finite, size_t
     const struct column *c = &a->p.column[column];
     for (uint32_t k = 0; column_is_real(c) && k < c->ncomp; k++) {
         const size_t at = k * c->plane;
-        *particle = c->size == sizeof(float)
+        *particle = c->quantum > 0.0 ? first_bad4(c->low + at, a->p.n, finite)
+                    : c->size == sizeof(float)
                         ? first_bad4((const float *)c->data + at, a->p.n, finite)
                         : first_bad((const double *)c->data + at, a->p.n, finite);
         if (*particle < a->p.n) {
@@ -82,7 +83,7 @@ static int tell(const struct run *r, const char *who, const struct plan_array *a
     size_t used = 0;
     for (int c = 0; c < r->plan->dim && used < sizeof place; c++)
         used += (size_t)snprintf(place + used, sizeof place - used, "%s%g", c ? ", " : "",
-                                 ((const double *)x->data)[(size_t)c * x->plane + i]);
+                                 column_get(x, (uint32_t)c, i));
     return error_set(e, EXIT_RUN,
                      "%s made \"%s\" %s for particle %lld of array \"%s\" at x = (%s), step %llu, "
                      "t = %g",

@@ -83,6 +83,34 @@ static int widen_h(struct run *r, struct error *e)
     return 0;
 }
 
+/* Places, likewise: the column itself goes into doubles, and into quanta when there are lists. */
+static int widen_places(struct run *r, struct error *e)
+{
+    for (size_t a = 0; a < r->plan->n_array; a++) {
+        struct plan_array *pa = &r->plan->array[a];
+        if (pa->in_quanta && particles_hold(&pa->p, pa->position, sizeof(double), false, e))
+            return -1;
+    }
+    return 0;
+}
+
+static int narrow_places(struct run *r, struct error *e)
+{
+    for (size_t a = 0; a < r->plan->n_array; a++) {
+        struct plan_array *pa = &r->plan->array[a];
+        if (!pa->in_quanta)
+            continue;
+        if (particles_hold_quanta(&pa->p, pa->position, r->centre, r->quantum, e))
+            return -1;
+        for (uint32_t k = 0; k < pa->p.column[pa->position].ncomp; k++)
+            if (any_not_finite4(pa->p.column[pa->position].low +
+                                    k * pa->p.column[pa->position].plane,
+                                pa->p.n + pa->p.n_ghost))
+                return error_set(e, EXIT_RUN, "a particle of array \"%s\" is nowhere", pa->p.name);
+    }
+    return 0;
+}
+
 static void forget_h(struct run *r)
 {
     for (size_t a = 0; a < r->plan->n_array; a++) {
@@ -101,10 +129,54 @@ static size_t clouds_of(const struct run *r, size_t frame, struct cloud *cloud)
     return n;
 }
 
+/* What has changed of an array whose places are held in quanta: a piece of them in doubles at a time. */
+static struct skin_change change_in_quanta(const struct run *r, const struct skin *kept,
+                                           size_t array)
+{
+    const struct plan_array *a = &r->plan->array[array];
+    const long n = (long)a->p.n;
+    double moved = 0.0, room = INFINITY, none = 0.0;
+    if (kept->n != a->p.n)
+        return (struct skin_change){NAN, NAN};
+#pragma omp parallel for schedule(static) num_threads(r->threads) if (n > 20000)                   \
+    reduction(max : moved) reduction(min : room) reduction(+ : none)
+    for (long first = 0; first < n; first += SKIN_PIECE) {
+        double x[3][SKIN_PIECE];
+        struct cloud cloud = cloud_of(r, array, 0, false);
+        cloud.n = n - first < SKIN_PIECE ? (size_t)(n - first) : SKIN_PIECE;
+        for (int c = 0; c < cloud.dim; c++) {
+            column_load(&a->p.column[a->position], (uint32_t)c, (size_t)first, cloud.n, x[c]);
+            cloud.x[c] = x[c];
+        }
+        cloud.h = cloud.h ? cloud.h + first : NULL;
+        const struct skin part = skin_part(kept, (size_t)first, cloud.n);
+        const struct skin_change here = skin_change(&part, &cloud, r->skin, 1);
+        moved = here.moved > moved ? here.moved : moved;
+        room = here.room < room ? here.room : room;
+        none += here.moved * 0.0;
+    }
+    return (struct skin_change){moved + none, room};
+}
+
 static bool holds(const struct run *r, size_t frame)
 {
-    const size_t n = clouds_of(r, frame, r->cloud);
-    return skin_holds(r->kept + frame * r->plan->n_array, r->cloud, n, r->skin, r->threads);
+    const struct skin *kept = r->kept + frame * r->plan->n_array;
+    double moved = 0.0, room = INFINITY;
+    for (size_t a = 0; a < r->plan->n_array; a++) {
+        if (!in_frame(r, frame, a))
+            continue;
+        const struct plan_array *pa = &r->plan->array[a];
+        const struct cloud cloud = cloud_of(r, a, frame, false);
+        const struct skin_change here = pa->p.column[pa->position].quantum > 0.0
+                                            ? change_in_quanta(r, kept, a)
+                                            : skin_change(kept, &cloud, r->skin, r->threads);
+        kept++;
+        if (!(here.moved < INFINITY))
+            return false;
+        moved = fmax(moved, here.moved);
+        room = fmin(room, here.room);
+    }
+    return 2.0 * moved <= room;
 }
 
 static int keep_places(struct run *r, size_t frame, struct error *e)
@@ -273,7 +345,8 @@ int run_lists(struct run *r, bool within, struct error *e)
     int status = 0;
     if (!r->lists_made || !holds(r, 0)) {
         bool sort = !within && (!r->lists_made || ++r->builds_since_sort >= BUILDS_PER_SORT);
-        if (!within) {
+        status = widen_places(r, e);
+        if (!within && !status) {
             for (size_t a = 0; a < r->plan->n_array; a++)
                 sides_wrap(&r->plan->scene->box, &r->plan->array[a].p);
             if (sort)
@@ -288,6 +361,8 @@ int run_lists(struct run *r, bool within, struct error *e)
         if (!status)
             status = make_lists(r, sort, e);
         forget_h(r);
+        if (!status)
+            status = narrow_places(r, e);
         r->lists_made = !status;
         r->cost.list_builds++;
     }

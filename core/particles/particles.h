@@ -18,6 +18,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <string.h>
 
 #define PARTICLES_PAD 64
 
@@ -62,15 +63,14 @@ static inline double column_get(const struct column *c, uint32_t k, size_t i)
     return c->low ? high + (double)c->low[at] : high;
 }
 
-/* A number of quanta as a whole number and the rest: a difference of two whole ones has room. What is too
- * far away, or no number, is all in the rest. */
-#define QUANTA_MOST 1073741823.0
+/* The whole number nearest to a number of quanta, without a branch: what is added leaves it in the last bits.
+ * Of what is too far away, or no number, it is any; the rest makes up for that. */
 static inline int32_t quanta_whole(double quanta)
 {
-    double near = quanta + copysign(0.5, quanta);
-    near = near < QUANTA_MOST ? near : QUANTA_MOST;
-    near = near > -QUANTA_MOST ? near : -QUANTA_MOST;
-    return (int32_t)near;
+    const double shifted = quanta + 0x1.8p52;
+    uint64_t bits;
+    memcpy(&bits, &shifted, sizeof bits);
+    return (int32_t)(uint32_t)bits;
 }
 
 static inline void column_set(const struct column *c, uint32_t k, size_t i, double value)

@@ -1,6 +1,7 @@
 /* run/mirrors.c -- columns' copies in 4 bytes, for sweeps in floats: a state column's as floats; the
  * position's as whole numbers of a quantum, whose differences are exact wherever in the domain they are
- * taken. Made when a sweep reads them and their column has changed. */
+ * taken. Made when a sweep reads them and their column has changed. Only of what must be in doubles all
+ * the time (plan/precision.c): two floats, or quanta and a rest, need no mirror. */
 #include "base/clones.h"
 #include "run/run.h"
 #include <math.h>

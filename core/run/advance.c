@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define CHUNK 512
+#define CHUNK SKIN_PIECE
 /* Fewer particles than this are done before a second thread has woken. */
 #define PARALLEL_FROM 20000
 
@@ -165,8 +165,22 @@ static void combine(double *y, const double *base, double a, const double *r, co
 
 enum { BAD_RATE = 1, BAD_PLACE = 2 };
 
+/* Of the chunk at `first`: positions in quanta that the program has just moved, and still has in doubles. */
+static struct skin_change change_of(const struct program *g, size_t first, size_t n, double **at)
+{
+    const struct plan_array *a = g->array;
+    const double *x[3] = {NULL, NULL, NULL};
+    for (size_t i = 0; i < g->n_line; i++)
+        if (g->line[i].column == a->position && g->line[i].writes)
+            x[g->line[i].k] = at[i];
+    if (!x[0] || !(a->p.column[a->position].quantum > 0.0) || !g->run->lists_made)
+        return (struct skin_change){NAN, NAN};
+    return run_change(g->run, (size_t)(a - g->run->plan->array), first, n, x);
+}
+
 /* On the chunk at `first`; `room` holds a chunk of every line, `at` a pointer to each. */
-static int run_chunk(const struct program *g, size_t first, double **at, double *room)
+static int run_chunk(const struct program *g, size_t first, double **at, double *room,
+                     struct skin_change *change)
 {
     const struct particles *p = &g->array->p;
     const size_t n = p->n - first < CHUNK ? p->n - first : CHUNK;
@@ -195,24 +209,33 @@ static int run_chunk(const struct program *g, size_t first, double **at, double 
             !mirror_places(g->run, c, l->k, first, n))
             bad |= BAD_PLACE;
     }
+    *change = change_of(g, first, n, at);
     return bad;
 }
 
-static int run_program(const struct program *g, int threads, struct error *e)
+static int run_program(const struct program *g, int threads, struct skin_change *change,
+                       struct error *e)
 {
     const long n = (long)g->array->p.n;
     const size_t most = n > PARALLEL_FROM ? (size_t)threads : 1;
     const size_t room = (g->n_line + 1) * CHUNK;
     int bad = 0;
+    double moved = 0.0, left = INFINITY, none = 0.0;
     double **at = malloc((g->n_line + 1) * most * sizeof *at);
     double *lent = aligned_alloc(64, room * most * sizeof *lent);
     if (at && lent) {
-#pragma omp parallel for schedule(static) num_threads((int)most) reduction(| : bad)
+#pragma omp parallel for schedule(static) num_threads((int)most) reduction(| : bad)                \
+    reduction(max : moved) reduction(min : left) reduction(+ : none)
         for (long first = 0; first < n; first += CHUNK) {
             const size_t me = (size_t)omp_get_thread_num();
-            bad |= run_chunk(g, (size_t)first, at + me * (g->n_line + 1), lent + me * room);
+            struct skin_change here;
+            bad |= run_chunk(g, (size_t)first, at + me * (g->n_line + 1), lent + me * room, &here);
+            moved = here.moved > moved ? here.moved : moved;
+            left = here.room < left ? here.room : left;
+            none += here.moved * 0.0;
         }
     }
+    *change = (struct skin_change){moved + none, left};
     const int status = at && lent ? bad : error_memory(e, "a step", room * most * sizeof *lent);
     free(at);
     free(lent);
@@ -220,7 +243,8 @@ static int run_program(const struct program *g, int threads, struct error *e)
 }
 
 /* What copies the columns is old; positions' mirrors are not, but of ghosts. */
-static void tell(struct run *r, size_t array, const struct program *g, int bad)
+static void tell(struct run *r, size_t array, const struct program *g, int bad,
+                 const struct skin_change *change)
 {
     const struct plan_array *a = g->array;
     for (size_t i = 0; i < g->n_line; i++) {
@@ -230,6 +254,10 @@ static void tell(struct run *r, size_t array, const struct program *g, int bad)
         run_changed(r, array, c);
         if (c == a->position && r->lists_made && !(bad & BAD_PLACE))
             r->mirror_old[array][c] = a->p.n_ghost ? MIRROR_GHOSTS_OLD : MIRROR_FRESH;
+    }
+    if (change->moved < INFINITY) {
+        r->change[array] = *change;
+        r->has_change[array] = true;
     }
     r->suspect = r->suspect || (bad & BAD_RATE);
 }
@@ -252,14 +280,15 @@ static int advance(struct run *r, size_t from, size_t to, struct error *e)
         saves = saves || table->op[k].kind == OP_SAVE_RATES;
     for (size_t a = 0; a < r->plan->n_array; a++) {
         struct program g;
+        struct skin_change change = {NAN, NAN};
         int bad = program_begin(&g, r, a, e);
         if (!bad) {
             add_all(&g, table->n_op - r->left, table->n_op, r->left_dt);
             add_all(&g, from, to, r->dt);
-            bad = g.n_action ? run_program(&g, r->threads, e) : 0;
+            bad = g.n_action ? run_program(&g, r->threads, &change, e) : 0;
         }
         if (bad >= 0)
-            tell(r, a, &g, bad);
+            tell(r, a, &g, bad, &change);
         program_free(&g);
         if (bad < 0)
             return -1;

@@ -129,28 +129,42 @@ static size_t clouds_of(const struct run *r, size_t frame, struct cloud *cloud)
     return n;
 }
 
-/* What has changed of an array whose places are held in quanta: a piece of them in doubles at a time. */
-static struct skin_change change_in_quanta(const struct run *r, const struct skin *kept,
-                                           size_t array)
+struct skin_change run_change(const struct run *r, size_t array, size_t first, size_t n,
+                              const double *const *x)
+{
+    struct cloud cloud = cloud_of(r, array, 0, false);
+    const struct skin *kept = r->kept;
+    for (size_t a = 0; a < array; a++)
+        kept += in_frame(r, 0, a);
+    if (!in_frame(r, 0, array))
+        return (struct skin_change){0.0, INFINITY};
+    if (kept->n != cloud.n)
+        return (struct skin_change){NAN, NAN};
+    cloud.n = n;
+    for (int c = 0; c < cloud.dim; c++)
+        cloud.x[c] = x[c];
+    cloud.h = cloud.h ? cloud.h + first : NULL;
+    const struct skin part = skin_part(kept, first, n);
+    return skin_change(&part, &cloud, r->skin, 1);
+}
+
+/* Of an array whose places are held in quanta, all: a piece of them in doubles at a time. */
+static struct skin_change change_in_quanta(const struct run *r, size_t array)
 {
     const struct plan_array *a = &r->plan->array[array];
     const long n = (long)a->p.n;
     double moved = 0.0, room = INFINITY, none = 0.0;
-    if (kept->n != a->p.n)
-        return (struct skin_change){NAN, NAN};
+    if (r->has_change[array])
+        return r->change[array];
 #pragma omp parallel for schedule(static) num_threads(r->threads) if (n > 20000)                   \
     reduction(max : moved) reduction(min : room) reduction(+ : none)
     for (long first = 0; first < n; first += SKIN_PIECE) {
         double x[3][SKIN_PIECE];
-        struct cloud cloud = cloud_of(r, array, 0, false);
-        cloud.n = n - first < SKIN_PIECE ? (size_t)(n - first) : SKIN_PIECE;
-        for (int c = 0; c < cloud.dim; c++) {
-            column_load(&a->p.column[a->position], (uint32_t)c, (size_t)first, cloud.n, x[c]);
-            cloud.x[c] = x[c];
-        }
-        cloud.h = cloud.h ? cloud.h + first : NULL;
-        const struct skin part = skin_part(kept, (size_t)first, cloud.n);
-        const struct skin_change here = skin_change(&part, &cloud, r->skin, 1);
+        const double *at[3] = {x[0], x[1], x[2]};
+        const size_t some = n - first < SKIN_PIECE ? (size_t)(n - first) : SKIN_PIECE;
+        for (uint32_t c = 0; c < a->p.column[a->position].ncomp; c++)
+            column_load(&a->p.column[a->position], c, (size_t)first, some, x[c]);
+        const struct skin_change here = run_change(r, array, (size_t)first, some, at);
         moved = here.moved > moved ? here.moved : moved;
         room = here.room < room ? here.room : room;
         none += here.moved * 0.0;
@@ -168,7 +182,7 @@ static bool holds(const struct run *r, size_t frame)
         const struct plan_array *pa = &r->plan->array[a];
         const struct cloud cloud = cloud_of(r, a, frame, false);
         const struct skin_change here = pa->p.column[pa->position].quantum > 0.0
-                                            ? change_in_quanta(r, kept, a)
+                                            ? change_in_quanta(r, a)
                                             : skin_change(kept, &cloud, r->skin, r->threads);
         kept++;
         if (!(here.moved < INFINITY))

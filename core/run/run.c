@@ -69,6 +69,8 @@ int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool 
     r->list = calloc(plan->n_list + 1, sizeof *r->list);
     r->kept = calloc(n * plan->n_frame + 1, sizeof *r->kept);
     r->cloud = calloc(n + 1, sizeof *r->cloud);
+    r->change = calloc(n + 1, sizeof *r->change);
+    r->has_change = calloc(n + 1, sizeof *r->has_change);
     r->frame_made = calloc(plan->n_frame + 1, sizeof *r->frame_made);
     r->frozen = calloc(plan->n_frame + 1, sizeof *r->frozen);
     r->stale = calloc(n + 1, sizeof *r->stale);
@@ -77,8 +79,9 @@ int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool 
     r->h_low = calloc(2 * n + 1, sizeof *r->h_low);
     r->h_high = r->h_low + n;
     r->reduced = calloc(plan->n_reduction + 1, sizeof *r->reduced);
-    if (!r->ghosts || !r->list || !r->kept || !r->cloud || !r->frame_made || !r->frozen ||
-        !r->stale || !r->mirror_old || !r->wide_h || !r->h_low || !r->reduced)
+    if (!r->ghosts || !r->list || !r->kept || !r->cloud || !r->change || !r->has_change ||
+        !r->frame_made || !r->frozen || !r->stale || !r->mirror_old || !r->wide_h || !r->h_low ||
+        !r->reduced)
         return error_memory(e, "the run", n * n * sizeof *r->list);
     for (size_t i = 0; i < plan->n_reduction; i++)
         r->reduced[i] = NAN;
@@ -117,6 +120,8 @@ void run_free(struct run *r)
     free(r->list);
     free(r->kept);
     free(r->cloud);
+    free(r->change);
+    free(r->has_change);
     free(r->frame_made);
     free(r->frozen);
     free(r->stale);

@@ -38,10 +38,12 @@ struct run {
     struct ghosts *ghosts;   /* [array] */
     struct group_list *list; /* [plan->n_list] */
     struct skin *kept; /* [frame * n_array + k]: of the frame's k-th array, when lists were made */
-    struct cloud *cloud; /* [array]: room for clouds */
-    bool *frame_made;    /* [frame]: the lists of frames but 0 are made when a pass asks for them */
-    bool *frozen;        /* [frame]: the copies of a frozen one are made */
-    bool **stale;        /* [array][column]: ghosts hold old values */
+    struct cloud *cloud;        /* [array]: room for clouds */
+    struct skin_change *change; /* [array]: of places since then, if has_change: seen in passing */
+    bool *has_change;
+    bool *frame_made; /* [frame]: the lists of frames but 0 are made when a pass asks for them */
+    bool *frozen;     /* [frame]: the copies of a frozen one are made */
+    bool **stale;     /* [array][column]: ghosts hold old values */
     uint8_t **mirror_old;      /* [array][column]: the mirror does: MIRROR_... */
     double centre[3], quantum; /* of positions' mirrors: x = centre + quantum * a whole number */
     bool h_fixed;              /* no pass and no rate changes any h */
@@ -74,6 +76,10 @@ void run_free(struct run *r);
 int run_lists(struct run *r, bool within, struct error *e);
 /* The lists of another frame than that of positions are there, and right. */
 int run_frame(struct run *r, size_t frame, struct error *e);
+/* What has changed of n particles from `first` on, a multiple of SKIN_PIECE, since the lists of positions were
+ * made; they stand at x[component] now. */
+struct skin_change run_change(const struct run *r, size_t array, size_t first, size_t n,
+                              const double *const *x);
 /* Ghosts of this column get their parents' values, if they hold old ones. */
 void run_refresh(struct run *r, size_t array, int column);
 /* A column was written: what copies it is old. */
@@ -81,6 +87,8 @@ static inline void run_changed(struct run *r, size_t array, int column)
 {
     r->stale[array][column] = r->plan->array[array].p.n_ghost > 0;
     r->mirror_old[array][column] = MIRROR_OLD;
+    if (column == r->plan->array[array].position || column == r->plan->array[array].smoothing)
+        r->has_change[array] = false;
 }
 
 /* Bytes held beside the particles' columns. */

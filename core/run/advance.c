@@ -2,8 +2,9 @@
  *
  * What stands between two evaluations is a program of a few lines a component, made anew each time, that
  * is run chunk by chunk, so that each column comes into the cache once. What is held in floats is laid
- * out in doubles for that; positions' mirrors are made in passing. What follows the last evaluation of a
- * step may wait for the beginning of the next and be part of its program (run_settle). */
+ * out in doubles for that; positions' mirrors are made in passing, and how far places in quanta have moved
+ * since there were lists is seen. What follows the last evaluation of a step may wait for the beginning of
+ * the next and be part of its program (run_settle). */
 #include "base/clones.h"
 #include "run/run.h"
 #include <omp.h>

@@ -195,7 +195,8 @@ SKIN_INLINE struct skin_change exact_change(const double *was, const struct clou
     double most = 0, room = INFINITY, none = 0;
 
     for (size_t k = 0; k < n; k++) {
-        double r2 = 0, left = (1 + relative) * was[(size_t)c->dim * BLOCK + k] - c->h[first + k];
+        double h = was[(size_t)c->dim * BLOCK + k], r2 = 0;
+        double left = (1 + relative) * h - (c->h ? c->h[first + k] : h);
 
         for (int a = 0; a < c->dim; a++) {
             double d = c->x[a][first + k] - was[(size_t)a * BLOCK + k];
@@ -212,9 +213,9 @@ SKIN_INLINE struct skin_change exact_change(const double *was, const struct clou
 /* The same where the places are kept in codes; h are taken a little less than they were. */
 SKIN_INLINE struct skin_change coded_change(const struct skin_block *b, const uint16_t *code,
                                             const struct cloud *c, size_t first, size_t n,
-                                            double relative, int dim)
+                                            double relative, int dim, bool fixed)
 {
-    const double *x[3], *h = c->h + first;
+    const double *x[3], *h = fixed ? NULL : c->h + first;
     double most = 0, room = INFINITY, none = 0;
 
     for (int a = 0; a < 3; a++) {
@@ -226,7 +227,7 @@ SKIN_INLINE struct skin_change coded_change(const struct skin_block *b, const ui
     for (size_t k = 0; k < n; k++) {
         /* Less that of code 0, which may stand for any smaller one. */
         double was = b->h * (ratio_of(code[(size_t)dim * BLOCK + k]) - 0x1p-31);
-        double left = (1 + relative) * was - h[k], r2 = 0;
+        double left = fixed ? relative * was : (1 + relative) * was - h[k], r2 = 0;
 
 #pragma GCC unroll 3
         for (int a = 0; a < dim; a++) {
@@ -253,13 +254,19 @@ SKIN_INLINE struct skin_change block_change(const struct skin *s, size_t at, con
     if (b->exact != EXACT_NO) {
         return exact_change(s->exact + b->exact * columns * BLOCK, c, first, n, relative);
     }
-    switch (s->dim) {
+    switch (s->dim + (c->h ? 0 : 3)) {
     case 1:
-        return coded_change(b, code, c, first, n, relative, 1);
+        return coded_change(b, code, c, first, n, relative, 1, false);
     case 2:
-        return coded_change(b, code, c, first, n, relative, 2);
+        return coded_change(b, code, c, first, n, relative, 2, false);
+    case 3:
+        return coded_change(b, code, c, first, n, relative, 3, false);
+    case 4:
+        return coded_change(b, code, c, first, n, relative, 1, true);
+    case 5:
+        return coded_change(b, code, c, first, n, relative, 2, true);
     default:
-        return coded_change(b, code, c, first, n, relative, 3);
+        return coded_change(b, code, c, first, n, relative, 3, true);
     }
 }
 
@@ -367,6 +374,17 @@ struct skin_change skin_change(const struct skin *s, const struct cloud *c, doub
         none += here.moved * 0;
     }
     return (struct skin_change){moved + none, room};
+}
+
+struct skin skin_part(const struct skin *s, size_t first, size_t n)
+{
+    struct skin part = *s;
+
+    part.n = n;
+    part.n_block = (n + BLOCK - 1) / BLOCK;
+    part.block += first / BLOCK;
+    part.code += first / BLOCK * (size_t)(s->dim + 1) * BLOCK;
+    return part;
 }
 
 bool skin_holds(const struct skin *s, const struct cloud *c, size_t n, double relative, int threads)

@@ -28,10 +28,14 @@ struct skin_change {
     double room;  /* the least of (1 + skin) * reach then - reach now */
 };
 
-/* Begin with zeros; keeping again uses the memory again. */
+/* Begin with zeros; keeping again uses the memory again. A change is also told of a cloud whose h is NULL:
+ * its h are what they were. */
 int skin_keep(struct skin *s, const struct cloud *c, int threads, struct error *e);
 struct skin_change skin_change(const struct skin *s, const struct cloud *c, double relative,
                                int threads);
+/* What was kept of n particles from `first` on, a multiple of SKIN_PIECE; memory is s's. */
+#define SKIN_PIECE 512
+struct skin skin_part(const struct skin *s, size_t first, size_t n);
 /* Whether lists with this relative skin over n clouds, each kept in one of s, still hold all pairs:
  * 2 * moved <= room over all particles of all clouds. False if a number is none, or the number of
  * particles has changed. */

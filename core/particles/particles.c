@@ -112,51 +112,73 @@ static void release(struct particles *p, void *data, size_t bytes)
 static void column_release(struct particles *p, struct column *c)
 {
     release(p, c->data, column_bytes(p, c, c->plane));
+    release(p, c->low, mirror_bytes(p, c, c->plane));
     release(p, c->mirror, mirror_bytes(p, c, c->plane));
-    c->data = NULL;
-    c->mirror = NULL;
+    c->data = c->mirror = NULL;
+    c->low = NULL;
+}
+
+/* Zeroed memory that the array owns, or NULL. */
+static void *acquire(struct particles *p, const struct column *c, size_t bytes, struct error *e)
+{
+    void *data = column_alloc(p, bytes);
+
+    if (!data) {
+        error_memory(e, c->name, bytes);
+        error_prefix(e, "%s", p->name);
+        return NULL;
+    }
+    p->arena_bytes += bytes;
+    return data;
 }
 
 static int mirror_alloc(struct particles *p, struct column *c, struct error *e)
 {
-    size_t bytes = mirror_bytes(p, c, c->plane);
+    c->mirror = acquire(p, c, mirror_bytes(p, c, c->plane), e);
+    return c->mirror ? 0 : -1;
+}
 
-    c->mirror = column_alloc(p, bytes);
-    if (!c->mirror) {
-        error_memory(e, c->name, bytes);
-        return error_prefix(e, "%s", p->name);
+/* Copies the first `keep` elements of each component. */
+static void move_planes(const struct column *c, const void *from, void *to, size_t plane,
+                        size_t keep, size_t size)
+{
+    for (uint32_t k = 0; from && k < c->ncomp; k++) {
+        memcpy((char *)to + k * plane * size, (const char *)from + k * c->plane * size,
+               keep * size);
     }
-    p->arena_bytes += bytes;
-    return 0;
 }
 
 /* Gives the column room for `capacity`, the first `keep` elements of each component kept; those of
- * a mirror are not. */
+ * a mirror are not. `rest`: with a second float. */
 static int column_grow(struct particles *p, struct column *c, size_t capacity, size_t keep,
-                       struct error *e)
+                       bool rest, struct error *e)
 {
     size_t plane = plane_for(capacity), bytes;
     bool mirrored = c->mirror != NULL;
-    char *data;
+    void *data, *low = NULL;
 
     if (plane < capacity || plane > SIZE_MAX / 128 / (c->ncomp * c->size)) {
         return error_set(e, EXIT_RUN, "%s.%s: %zu particles are too many", p->name, c->name,
                          capacity);
     }
     bytes = column_bytes(p, c, plane);
-    data = column_alloc(p, bytes);
+    data = acquire(p, c, bytes, e);
     if (!data) {
-        error_memory(e, c->name, bytes);
-        return error_prefix(e, "%s", p->name);
+        return -1;
     }
-    for (uint32_t k = 0; c->data && k < c->ncomp; k++) {
-        memcpy(data + k * plane * c->size, (char *)c->data + k * c->plane * c->size,
-               keep * c->size);
+    if (rest) {
+        low = acquire(p, c, bytes, e); /* as many floats */
+        if (!low) {
+            release(p, data, bytes);
+            return -1;
+        }
     }
+    move_planes(c, c->data, data, plane, keep, c->size);
+    move_planes(c, c->low, low, plane, keep, sizeof(float));
     column_release(p, c);
     c->data = data;
+    c->low = low;
     c->plane = plane;
-    p->arena_bytes += bytes;
     return mirrored ? mirror_alloc(p, c, e) : 0;
 }
 
@@ -165,6 +187,9 @@ static void column_clear(struct column *c, size_t first, size_t last)
 {
     for (uint32_t k = 0; k < c->ncomp; k++) {
         memset((char *)c->data + (k * c->plane + first) * c->size, 0, (last - first) * c->size);
+        if (c->low) {
+            memset(c->low + k * c->plane + first, 0, (last - first) * sizeof(float));
+        }
     }
 }
 
@@ -216,10 +241,12 @@ bool particles_is_valid(const struct particles *p)
         if (!c->name || !c->data || c->ncomp != property_ncomp(c->type, p->dim) ||
             (c->size != property_size(c->type) && !(column_is_real(c) && c->size == 4)) ||
             c->plane < p->capacity + PARTICLES_PAD || c->plane * c->size % ALIGN != 0 ||
-            (uintptr_t)c->data % ALIGN != 0 || particles_find(p, c->name) != (int)k) {
+            (uintptr_t)c->data % ALIGN != 0 || (c->low && c->size != 4) ||
+            particles_find(p, c->name) != (int)k) {
             return false;
         }
-        bytes += column_bytes(p, c, c->plane) + (c->mirror ? mirror_bytes(p, c, c->plane) : 0);
+        bytes += column_bytes(p, c, c->plane);
+        bytes += (size_t)(!!c->mirror + !!c->low) * mirror_bytes(p, c, c->plane);
     }
     return bytes == p->arena_bytes;
 }
@@ -256,7 +283,7 @@ static int column_init(struct particles *p, struct column *c, const char *name, 
     if (!c->name || !c->unit || !c->doc) {
         return error_memory(e, name, strlen(name) + 1);
     }
-    return column_grow(p, c, p->capacity, 0, e);
+    return column_grow(p, c, p->capacity, 0, false, e);
 }
 
 int particles_add(struct particles *p, const char *name, const char *unit, const char *doc,
@@ -299,26 +326,54 @@ double *particles_real(const struct particles *p, const char *name, uint32_t c)
     return (double *)p->column[k].data + c * p->column[k].plane;
 }
 
-int particles_hold(struct particles *p, int column, size_t size, struct error *e)
+/* The column takes the form that `c` has but for its memory; its values go over. */
+static int change_form(struct particles *p, struct column *c, const struct column *form, bool rest,
+                       struct error *e)
 {
-    struct column *c = &p->column[column], old = *c;
+    enum { PIECE = 256 };
+    struct column old = *c;
+    double value[PIECE];
 
-    if (c->size == size) {
-        return 0;
-    }
-    c->size = size;
+    *c = *form;
     c->data = c->mirror = NULL;
-    if (column_grow(p, c, p->capacity, 0, e) != 0) {
+    c->low = NULL;
+    if (column_grow(p, c, p->capacity, 0, rest, e) != 0) {
         *c = old;
         return -1;
     }
     for (uint32_t k = 0; k < c->ncomp; k++) {
-        for (size_t i = 0; i < p->n + p->n_ghost; i++) {
-            column_set(c, k, i, column_get(&old, k, i));
+        for (size_t i = 0, n = p->n + p->n_ghost; i < n; i += PIECE) {
+            size_t some = n - i < PIECE ? n - i : PIECE;
+
+            column_load(&old, k, i, some, value);
+            column_store(c, k, i, some, value);
         }
     }
     column_release(p, &old);
     return 0;
+}
+
+int particles_hold(struct particles *p, int column, size_t size, bool rest, struct error *e)
+{
+    struct column *c = &p->column[column], form = *c;
+
+    if (c->size == size && rest == (c->low != NULL)) {
+        return 0;
+    }
+    form.size = size;
+    form.quantum = 0;
+    return change_form(p, c, &form, rest, e);
+}
+
+int particles_hold_quanta(struct particles *p, int column, const double *centre, double quantum,
+                          struct error *e)
+{
+    struct column *c = &p->column[column], form = *c;
+
+    form.size = 4;
+    form.quantum = quantum;
+    memcpy(form.centre, centre, sizeof form.centre);
+    return change_form(p, c, &form, true, e);
 }
 
 int particles_mirror(struct particles *p, int column, struct error *e)
@@ -359,7 +414,7 @@ int particles_resize(struct particles *p, size_t n, size_t n_ghost, struct error
 
         for (size_t k = 0; k < p->n_column; k++) {
             /* A failure leaves columns of different planes, all of which hold the old capacity. */
-            if (column_grow(p, &p->column[k], capacity, keep, e) != 0) {
+            if (column_grow(p, &p->column[k], capacity, keep, p->column[k].low != NULL, e) != 0) {
                 return -1;
             }
         }
@@ -413,10 +468,22 @@ int particles_permute(struct particles *p, const uint32_t *order, struct error *
             } else {
                 permute(x, scratch, order, p->n, 4);
             }
+            if (c->low) {
+                permute((char *)(c->low + q * c->plane), scratch, order, p->n, 4);
+            }
         }
     }
     free(scratch);
     return 0;
+}
+
+/* x[i] = x[index[i]] of n elements out of `old`. */
+static void gather(char *x, char *scratch, const uint32_t *index, size_t n, size_t old, size_t size)
+{
+    memcpy(scratch, x, old * size);
+    for (size_t i = 0; i < n; i++) {
+        memcpy(x + i * size, scratch + index[i] * size, size);
+    }
 }
 
 int particles_gather(struct particles *p, const uint32_t *index, size_t n, struct error *e)
@@ -441,11 +508,9 @@ int particles_gather(struct particles *p, const uint32_t *index, size_t n, struc
         struct column *c = &p->column[k];
 
         for (uint32_t q = 0; q < c->ncomp; q++) {
-            char *x = (char *)c->data + q * c->plane * c->size;
-
-            memcpy(scratch, x, old * c->size);
-            for (size_t i = 0; i < n; i++) {
-                memcpy(x + i * c->size, scratch + index[i] * c->size, c->size);
+            gather((char *)c->data + q * c->plane * c->size, scratch, index, n, old, c->size);
+            if (c->low) {
+                gather((char *)(c->low + q * c->plane), scratch, index, n, old, sizeof(float));
             }
         }
     }
@@ -480,7 +545,7 @@ size_t particles_bytes(const struct particles *p)
     for (size_t k = 0; k < p->n_column; k++) {
         const struct column *c = &p->column[k];
 
-        bytes += c->ncomp * (c->size + (c->mirror ? 4 : 0));
+        bytes += c->ncomp * (c->size + (c->mirror ? 4 : 0) + (c->low ? 4 : 0));
     }
     return bytes;
 }
@@ -493,6 +558,7 @@ int particles_guard(struct particles *p, int column, int access)
     if (!p->guarded) {
         return -1;
     }
+    /* What stands in `low` is the core's own: no plugin is ever given it. */
     if (c->mirror && mprotect(c->mirror, mirror_bytes(p, c, c->plane), protection) != 0) {
         return -1;
     }

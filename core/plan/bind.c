@@ -483,3 +483,15 @@ bool pass_reads_source(const struct pass *p, size_t array, int column)
             return true;
     return false;
 }
+
+bool plan_changes(const struct plan *plan, size_t array, int column)
+{
+    const struct plan_array *a = &plan->array[array];
+    for (size_t k = 0; k < a->n_rate; k++)
+        if (a->rate[k].property == column)
+            return true;
+    for (size_t i = 0; i < plan->n_pass; i++)
+        if (pass_writes(&plan->pass[i], array, column))
+            return true;
+    return false;
+}

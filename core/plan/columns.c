@@ -128,7 +128,7 @@ static int add_rate(struct plan *plan, struct plan_array *a, const sph_rate *dec
     if (!bigger)
         return error_memory(e, "rates", sizeof *bigger);
     a->rate = bigger;
-    a->rate[a->n_rate - 1] = (struct rate){y, r, declared->kind};
+    a->rate[a->n_rate - 1] = (struct rate){y, r, declared->kind, -1, -1, NO_PASS, false};
     if (y == a->position)
         a->velocity = r;
     return 0;
@@ -167,7 +167,7 @@ static int add_rates(struct plan *plan, const sph_list *rates, size_t array, str
     return 0;
 }
 
-/* "a.0": what the integrator keeps of a column. */
+/* "a.0": what the integrator keeps of a column, held as that is; its index, or -1. */
 static int add_saved(struct plan_array *a, int column, struct error *e)
 {
     const struct column *of = &a->p.column[column];
@@ -179,7 +179,9 @@ static int add_saved(struct plan_array *a, int column, struct error *e)
     if (c < 0)
         return -1;
     a->p.column[c].state = true;
-    return 0;
+    a->in_floats[c] = a->in_floats[column];
+    a->in_two[c] = a->in_two[column];
+    return c;
 }
 
 static int add_integrator_columns(struct plan *plan, struct error *e)
@@ -187,12 +189,13 @@ static int add_integrator_columns(struct plan *plan, struct error *e)
     for (size_t i = 0; i < plan->n_array; i++) {
         struct plan_array *a = &plan->array[i];
         for (size_t k = 0; k < a->n_rate; k++) {
-            struct rate r = a->rate[k];
+            struct rate *r = &a->rate[k];
             /* A rate outlives its evaluation (it starts the next step), so a sort must carry it. */
-            a->p.column[r.rate].state = a->p.column[r.property].state = true;
-            if (plan->integrator->saves_state && add_saved(a, r.property, e))
+            a->p.column[r->rate].state = a->p.column[r->property].state = true;
+            if (plan->integrator->saves_state && (r->kept = add_saved(a, r->property, e)) < 0)
                 return -1;
-            if (plan->integrator->saves_rates && r.kind == SPH_KICK && add_saved(a, r.rate, e))
+            if (plan->integrator->saves_rates && r->kind == SPH_KICK && r->closed == NO_PASS &&
+                (r->saved = add_saved(a, r->rate, e)) < 0)
                 return -1;
         }
     }
@@ -249,6 +252,12 @@ int columns_finish(struct plan *plan, struct error *e)
     for (size_t a = 0; plan->scheme && a < plan->n_array; a++)
         if (add_rates(plan, &plan->scheme->rates, a, e))
             return -1;
+    for (size_t i = 0; i < plan->n_pass; i++)
+        if (find_continued(plan, i, e))
+            return -1;
+    if (precision_decide(plan, e))
+        return -1;
+    closing_find(plan);
     if (add_integrator_columns(plan, e) || find_required(plan, e))
         return -1;
     for (size_t a = 0; a < plan->n_array; a++) {
@@ -262,10 +271,7 @@ int columns_finish(struct plan *plan, struct error *e)
             pa->p.column[c].output = !strchr(pa->p.column[c].name, '.');
         }
     }
-    for (size_t i = 0; i < plan->n_pass; i++) {
+    for (size_t i = 0; i < plan->n_pass; i++)
         hide_work(plan, &plan->pass[i]);
-        if (find_continued(plan, i, e))
-            return -1;
-    }
     return 0;
 }

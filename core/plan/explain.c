@@ -121,10 +121,12 @@ static void print_pass(const struct plan *plan, const struct pass *p, size_t num
     print_access(plan, p, "takes max", SPH_DST_MAX, false, out);
 }
 
-/* Bytes of an element, and of its mirror. */
+/* Bytes of an element, and of its mirror; or of its two parts. */
 static const char *held(const struct plan_array *a, size_t c)
 {
     const struct column *column = &a->p.column[c];
+    if (a->in_two[c] || (a->in_quanta && (int)c == a->position))
+        return "4 + 4";
     return a->in_floats[c] || column->size == 4 ? "4" : a->mirrored[c] ? "8 + 4" : "8";
 }
 

@@ -24,7 +24,9 @@ int columns_finish(struct plan *plan, struct error *e);
 /* fusion.c: how many of the steps from `first` on are one function's parts (0: none), and which it is. */
 size_t fusion_find(const struct plan *plan, size_t first, const struct entry **whole);
 /* precision.c: which passes work in floats, which columns are held in them. */
-int precision_finish(struct plan *plan, struct error *e);
+int precision_decide(struct plan *plan, struct error *e);
+/* closing.c: of every rate, which pass corrects its property; needs to know how columns are held. */
+void closing_find(struct plan *plan);
 /* Fails at a scene node with " (did you mean ...)" over a registry kind's names. */
 int plan_unknown(const struct plan *plan, const cJSON *node, enum kind kind, const char *name,
                  struct error *e);

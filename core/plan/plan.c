@@ -207,8 +207,7 @@ int plan_make(struct plan *plan, struct registry *r, const struct scene *s, bool
     if (find_scheme(plan, e) || find_kernel(plan, e) || find_integrator(plan, e) ||
         find_manager(plan, e) || recipe_make(plan, e) || columns_begin(plan, guarded, e) ||
         bind_passes(plan, e) || check_scheme_members(plan, e) || check_boundaries(plan, e) ||
-        columns_finish(plan, e) || precision_finish(plan, e) || bind_exact(plan, e) ||
-        check_reports(plan, e))
+        columns_finish(plan, e) || bind_exact(plan, e) || check_reports(plan, e))
         return -1;
     return 0;
 }
@@ -285,6 +284,7 @@ void plan_free(struct plan *plan)
         free(pa->required);
         free(pa->initial);
         free(pa->in_floats);
+        free(pa->in_two);
         free(pa->mirrored);
     }
     free(plan->array);

@@ -99,7 +99,12 @@ struct pass {
 struct rate {
     int property, rate;
     uint32_t kind; /* SPH_KICK or SPH_DRIFT */
+    int saved;     /* column of what the integrator keeps of the rate, or -1 */
+    int kept;      /* of the property, or -1 */
+    size_t closed; /* the pass that corrects the property as it makes the rate, or NO_PASS */
+    bool anew;     /* every evaluation overwrites the rate before anything reads it */
 };
+#define NO_PASS SIZE_MAX
 
 /* A global reduction of a pass's column. */
 struct reduction {
@@ -117,7 +122,9 @@ struct plan_array {
     bool *required;  /* per column: an initial value is needed */
     double *initial; /* per column: declared default; NaN: none */
     bool *in_floats; /* per column: held in floats while the run goes on ... */
+    bool *in_two;    /* ... with a second float each for what the first leaves out ... */
     bool *mirrored;  /* ... or in doubles with a mirror in floats */
+    bool in_quanta;  /* the position: in quanta while neighbour lists hold */
     struct use eos;  /* of its material; entry NULL: none */
     int position, velocity, smoothing, mass,
         id; /* columns; velocity: the rate of the position, or -1 */
@@ -168,6 +175,9 @@ size_t plan_bytes(const struct plan *plan, size_t array);
 /* Columns of array a that a pass reads from it, writes in it. */
 bool pass_writes(const struct pass *p, size_t array, int column);
 bool pass_reads_source(const struct pass *p, size_t array, int column);
+
+/* Whether anything changes the column as the run goes on: a pass, or the integrator. */
+bool plan_changes(const struct plan *plan, size_t array, int column);
 
 /* For people (80 columns) and for machines. */
 void plan_print(const struct plan *plan, FILE *out);

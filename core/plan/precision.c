@@ -1,6 +1,6 @@
 /* plan/precision.c -- which sweeps work in floats, and how each column is held. A sweep in floats needs all
- * its columns in floats; what an integrator advances stays in doubles beside that (but in a run of single
- * precision), and so does what a function without floats sums or the core itself works on. */
+ * its columns in floats; what an integrator advances is held in two floats then (but in a run of single
+ * precision), and in doubles with a mirror what a function without floats sums or the core itself works on. */
 #include "plan/inside.h"
 #include <stdlib.h>
 #include <string.h>
@@ -35,48 +35,70 @@ static void mark_geometry(const struct plan *plan, const struct pass *p, bool **
     }
 }
 
+/* A pair pass writes it, or something is advanced with it. */
+static bool is_summed(const struct plan *plan, size_t array, int column)
+{
+    for (size_t i = 0; i < plan->n_pass; i++)
+        if (plan->pass[i].shape == SPH_PAIR && pass_writes(&plan->pass[i], array, column))
+            return true;
+    for (size_t k = 0; k < plan->array[array].n_rate; k++)
+        if (plan->array[array].rate[k].rate == column)
+            return true;
+    return false;
+}
+
 /* Columns whose doubles somebody needs: sums in doubles, particles that are born, the core. */
 static void keep_doubles(struct plan *plan, bool **doubles)
 {
     for (size_t i = 0; i < plan->n_pass; i++) {
         const struct pass *p = &plan->pass[i];
         const sph_population *d = p->use.entry ? p->use.entry->population : NULL;
-        if (p->shape == SPH_PAIR && p->real == SPH_F64)
+        if (p->shape == SPH_PAIR && p->real == SPH_F64) {
             mark(p, doubles);
+            mark_geometry(plan, p, doubles);
+        }
         for (uint32_t k = 0; d && k < d->born_props.count; k++) {
             const sph_prop *prop = list_at(&d->born_props, k);
             doubles[p->dst.array][particles_find(&plan->array[p->dst.array].p, prop->name)] = true;
         }
     }
+    /* Neighbours are looked for in doubles. An h that stays as it is can be laid out in them for that; places
+     * go into doubles and back. */
     for (size_t a = 0; a < plan->n_array; a++) {
-        const struct plan_array *pa = &plan->array[a];
-        doubles[a][pa->position] = doubles[a][pa->smoothing] = true;
-        for (size_t k = 0; plan->precision != PRECISION_SINGLE && k < pa->n_rate; k++)
-            doubles[a][pa->rate[k].property] = true;
+        const int h = plan->array[a].smoothing, x = plan->array[a].position;
+        doubles[a][x] = doubles[a][x] || plan->n_frame > 1 || is_summed(plan, a, x);
+        doubles[a][h] = doubles[a][h] || plan->n_frame > 1 || plan_changes(plan, a, h);
     }
 }
 
-static void decide(struct plan_array *a, const bool *floats, const bool *doubles)
+static void decide(const struct plan *plan, struct plan_array *a, const bool *floats,
+                   const bool *doubles)
 {
     for (size_t c = 0; c < a->p.n_column; c++) {
         if (!floats[c] || !column_is_real(&a->p.column[c]))
             continue;
+        if ((int)c == a->position && !doubles[c]) {
+            a->in_quanta = true;
+            continue;
+        }
         a->mirrored[c] = doubles[c];
         a->in_floats[c] = !doubles[c];
-    }
-    /* What the integrator keeps of a rate is as exact as the rate; of a state, as the state. */
-    for (size_t c = 0; c < a->p.n_column; c++) {
-        const char *name = a->p.column[c].name;
-        for (size_t k = 0; k < a->p.n_column; k++) {
-            const char *of = a->p.column[k].name;
-            const size_t n = strlen(of);
-            if (strncmp(name, of, n) == 0 && strcmp(name + n, ".0") == 0)
-                a->in_floats[c] = a->in_floats[k];
-        }
+        for (size_t k = 0; plan->precision != PRECISION_SINGLE && k < a->n_rate; k++)
+            a->in_two[c] = a->in_two[c] || (!doubles[c] && a->rate[k].property == (int)c);
     }
 }
 
-int precision_finish(struct plan *plan, struct error *e)
+/* With room for what the integrator will keep: of every rate, and of what it advances. */
+static int make_room(struct plan_array *a, struct error *e)
+{
+    const size_t n = a->p.n_column + 2 * a->n_rate + 1;
+    a->in_floats = calloc(n, sizeof *a->in_floats);
+    a->in_two = calloc(n, sizeof *a->in_two);
+    a->mirrored = calloc(n, sizeof *a->mirrored);
+    return a->in_floats && a->in_two && a->mirrored ? 0 : error_memory(e, "the plan", n);
+}
+
+int precision_decide(struct plan *plan, struct error *e)
 {
     const char *wanted = plan->scene->precision;
     const size_t n = plan->n_array;
@@ -91,10 +113,8 @@ int precision_finish(struct plan *plan, struct error *e)
         struct plan_array *pa = &plan->array[a];
         floats[a] = calloc(pa->p.n_column + 1, sizeof **floats);
         doubles[a] = calloc(pa->p.n_column + 1, sizeof **doubles);
-        pa->in_floats = calloc(pa->p.n_column + 1, sizeof *pa->in_floats);
-        pa->mirrored = calloc(pa->p.n_column + 1, sizeof *pa->mirrored);
-        if (!floats[a] || !doubles[a] || !pa->in_floats || !pa->mirrored)
-            status = error_memory(e, "the plan", pa->p.n_column);
+        status = floats[a] && doubles[a] ? make_room(pa, e)
+                                         : error_memory(e, "the plan", pa->p.n_column);
     }
     for (size_t i = 0; !status && i < plan->n_pass; i++) {
         struct pass *p = &plan->pass[i];
@@ -108,7 +128,7 @@ int precision_finish(struct plan *plan, struct error *e)
         keep_doubles(plan, doubles);
     for (size_t a = 0; a < n && floats; a++) {
         if (!status)
-            decide(&plan->array[a], floats[a], doubles[a]);
+            decide(plan, &plan->array[a], floats[a], doubles[a]);
         free(floats[a]);
         free(doubles[a]);
     }
@@ -122,7 +142,8 @@ size_t plan_bytes(const struct plan *plan, size_t array)
     size_t bytes = 0;
     for (size_t c = 0; c < a->p.n_column; c++) {
         const struct column *column = &a->p.column[c];
-        bytes += column->ncomp * (a->in_floats[c] ? 4 : column->size + (a->mirrored[c] ? 4 : 0));
+        const size_t size = a->in_floats[c] ? sizeof(float) : column->size;
+        bytes += column->ncomp * (size + (a->mirrored[c] || a->in_two[c] ? sizeof(float) : 0));
     }
     return bytes;
 }

@@ -5,6 +5,7 @@
  * Sweeps work on columns as they are held, or on their mirrors in floats. All other calls of a plugin see
  * doubles: of what is held in floats, a chunk's worth is laid out for the call and put back after it. */
 #include "run/chunks.h"
+#include "run/closing.h"
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
@@ -22,7 +23,9 @@ struct work {
     sph_batch *pair;               /* [n_src] */
     enum stage stage[STAGES_MOST]; /* in order; STAGE_SWEEP over all sources */
     size_t n_stage;
-    size_t room;   /* bytes that a thread needs to lay out a chunk */
+    struct closing closing;
+    size_t laid;   /* bytes that a thread needs to lay out a chunk; 0: nothing is */
+    size_t room;   /* and for the chunk's closing, behind them */
     char *scratch; /* [threads] of them */
 };
 
@@ -47,10 +50,31 @@ static bool in_floats(const struct work *w, uint32_t k)
     return column_is_real(c) && c->size == sizeof(float);
 }
 
+/* The column, if the pass is given it as the destinations' geometry and it is not held in doubles. */
+static const struct column *to_lay_out(const struct work *w, int column)
+{
+    const struct column *c = &destinations(w)->column[column];
+    return w->p->shape == SPH_PAIR && c->size == sizeof(float) ? c : NULL;
+}
+
+/* Doubles that this takes. */
+static size_t geometry_room(const struct work *w)
+{
+    const struct plan_array *a = &w->r->plan->array[w->p->dst.array];
+    const struct column *x = to_lay_out(w, a->position), *h = to_lay_out(w, a->smoothing);
+    return (size_t)((x ? x->ncomp : 0) + (h ? 1 : 0)) * STRIDE;
+}
+
 #define WRITES (SPH_DST_WRITE | SPH_DST_SUM | SPH_DST_MAX | SPH_DST_MIN)
 #define SUMS (SPH_DST_SUM | SPH_DST_MAX | SPH_DST_MIN)
 
 /* -- Stages of one chunk ------------------------------------------------------------------------ */
+
+static void fill(float *to, uint64_t n, float value)
+{
+    for (uint64_t i = 0; i < n; i++)
+        to[i] = value;
+}
 
 static void reset(const struct work *w, uint64_t first, uint64_t count)
 {
@@ -59,12 +83,18 @@ static void reset(const struct work *w, uint64_t first, uint64_t count)
         const struct column *c = &destinations(w)->column[w->p->dst.column[k]];
         if (!(prop->access & SUMS) || w->p->continues[k])
             continue;
+        const float high = (float)prop->start;
         for (uint32_t q = 0; q < c->ncomp; q++) {
             const uint64_t at = q * c->plane + first;
-            for (uint64_t i = 0; i < count; i++)
-                column_set(c, q, first + i, prop->start);
-            for (uint64_t i = 0; c->mirror && w->p->real == SPH_F32 && i < count; i++)
-                ((float *)c->mirror)[at + i] = (float)prop->start;
+            if (c->size == sizeof(float))
+                fill((float *)c->data + at, count, high);
+            else
+                for (uint64_t i = 0; i < count; i++)
+                    ((double *)c->data)[at + i] = prop->start;
+            if (c->low)
+                fill(c->low + at, count, column_rest(prop->start, high));
+            if (c->mirror && w->p->real == SPH_F32)
+                fill((float *)c->mirror + at, count, high);
         }
     }
 }
@@ -76,43 +106,58 @@ static void collect(const struct work *w, uint64_t first, uint64_t count)
         const struct column *c = &destinations(w)->column[w->p->dst.column[k]];
         if (!(prop_at(w, k)->access & SUMS) || !c->mirror)
             continue;
-        for (uint32_t q = 0; q < c->ncomp; q++)
+        for (uint32_t q = 0; q < c->ncomp; q++) {
+            const float *from = (const float *)c->mirror + q * c->plane + first;
+            double *to = (double *)c->data + q * c->plane + first;
             for (uint64_t i = 0; i < count; i++)
-                column_set(c, q, first + i,
-                           (double)((const float *)c->mirror)[q * c->plane + first + i]);
+                to[i] = (double)from[i];
+        }
     }
 }
 
-/* Doubles of a chunk of what is held in floats: laid out so that element i of the view is particle i. */
-static void lay_out(const struct work *w, char *scratch, uint64_t first, uint64_t count,
-                    sph_column *view)
+/* Of one column; behind it there is room again. No pointer is formed that points before its memory: whole
+ * numbers are. */
+static double *lay_out_one(const struct column *c, double *at, uint64_t first, uint64_t count,
+                           bool loads, sph_column *view)
 {
+    for (uint32_t q = 0; loads && q < c->ncomp; q++)
+        column_load(c, q, first, count, at + q * STRIDE);
+    view->data = (void *)((uintptr_t)at - first * sizeof(double));
+    view->plane = STRIDE;
+    return at + (size_t)c->ncomp * STRIDE;
+}
+
+/* Doubles of a chunk of what is not held in them: laid out so that element i of the view is particle i. Of
+ * what is only written the old values are not looked for, but by a pass that iterates, which may leave
+ * some. */
+static void lay_out(const struct work *w, char *scratch, sph_column *view, sph_batch *b)
+{
+    const struct plan_array *a = &w->r->plan->array[w->p->dst.array];
+    const struct column *x = to_lay_out(w, a->position), *h = to_lay_out(w, a->smoothing);
     double *at = (double *)(void *)scratch;
+    if (x)
+        at = lay_out_one(x, at, b->first, b->count, true, &b->x_dst);
+    if (h)
+        at = lay_out_one(h, at, b->first, b->count, true, &b->h_dst);
     for (uint32_t k = 0; k < n_prop(w); k++) {
         const struct column *c = &destinations(w)->column[w->p->dst.column[k]];
+        const bool loads = w->p->max_sweeps || prop_at(w, k)->access != SPH_DST_WRITE;
         view[k] = w->alone.dst[k];
-        if (!in_floats(w, k))
-            continue;
-        for (uint32_t q = 0; q < c->ncomp; q++)
-            for (uint64_t i = 0; i < count; i++)
-                at[q * STRIDE + i] = column_get(c, q, first + i);
-        /* No pointer is formed that points before its memory: whole numbers are. */
-        view[k].data = (void *)((uintptr_t)at - first * sizeof(double));
-        view[k].plane = STRIDE;
-        at += (size_t)c->ncomp * STRIDE;
+        if (in_floats(w, k))
+            at = lay_out_one(c, at, b->first, b->count, loads, &view[k]);
     }
+    b->dst = view;
 }
 
 static void put_back(const struct work *w, const char *scratch, uint64_t first, uint64_t count)
 {
-    const double *at = (const double *)(const void *)scratch;
+    const double *at = (const double *)(const void *)scratch + geometry_room(w);
     for (uint32_t k = 0; k < n_prop(w); k++) {
         const struct column *c = &destinations(w)->column[w->p->dst.column[k]];
         if (!in_floats(w, k))
             continue;
         for (uint32_t q = 0; (prop_at(w, k)->access & WRITES) && q < c->ncomp; q++)
-            for (uint64_t i = 0; i < count; i++)
-                column_set(c, q, first + i, at[q * STRIDE + i]);
+            column_store(c, q, first, count, at + q * STRIDE);
         at += (size_t)c->ncomp * STRIDE;
     }
 }
@@ -123,12 +168,11 @@ static sph_status alone(const struct work *w, sph_range_fn f, char *scratch, uin
     sph_batch b = w->alone;
     b.first = first;
     b.count = count;
-    if (!scratch)
+    if (!w->laid)
         return f(&b);
     sph_column *view = (sph_column *)(void *)scratch;
     char *room = scratch + (n_prop(w) * sizeof *view + 63) / 64 * 64;
-    lay_out(w, room, first, count, view);
-    b.dst = view;
+    lay_out(w, room, view, &b);
     const sph_status status = f(&b);
     put_back(w, room, first, count);
     return status;
@@ -176,18 +220,31 @@ static int failed(const struct run *r, const struct pass *p, sph_status status, 
                      (unsigned long long)r->step, r->time, why);
 }
 
+/* Stages [from, to) of a chunk; with the last the pass is done with it. */
+static sph_status do_chunk(struct work *w, size_t from, size_t to, size_t k)
+{
+    const uint64_t first = w->ranges->first[k], count = w->ranges->count[k];
+    char *scratch = w->room ? w->scratch + (size_t)omp_get_thread_num() * w->room : NULL;
+    void *kept = scratch ? scratch + w->laid : NULL;
+    sph_status status = SPH_OK;
+    if (from == 0)
+        closing_open(&w->closing, kept, first, count);
+    for (size_t s = from; s < to && status == SPH_OK; s++)
+        status = do_stage(w, w->stage[s], scratch, k);
+    if (to == w->n_stage)
+        closing_close(&w->closing, kept, k, first, count);
+    return status;
+}
+
 /* Stages [from, to) of every chunk. */
-static int do_stages(const struct work *w, size_t from, size_t to, struct error *e)
+static int do_stages(struct work *w, size_t from, size_t to, struct error *e)
 {
     sph_status worst = SPH_OK;
     const long n = (long)w->ranges->n;
     const int threads = w->p->serial || n < 2 ? 1 : w->r->threads;
 #pragma omp parallel for schedule(dynamic) num_threads(threads)
     for (long k = 0; k < n; k++) {
-        char *scratch = w->room ? w->scratch + (size_t)omp_get_thread_num() * w->room : NULL;
-        sph_status status = SPH_OK;
-        for (size_t s = from; s < to && status == SPH_OK; s++)
-            status = do_stage(w, w->stage[s], scratch, (size_t)k);
+        const sph_status status = do_chunk(w, from, to, (size_t)k);
         if (status != SPH_OK) {
 #pragma omp critical(pass_status)
             if (status < worst)
@@ -266,38 +323,53 @@ static void batch_pair(struct work *w, size_t s)
 
 static int make_room(struct work *w, struct error *e)
 {
-    size_t doubles = 0;
+    size_t doubles = geometry_room(w);
     for (uint32_t k = 0; k < n_prop(w); k++)
         if (w->p->dst.column[k] >= 0 && in_floats(w, k))
             doubles += (size_t)destinations(w)->column[w->p->dst.column[k]].ncomp * STRIDE;
-    if (!doubles || (!w->p->before && !w->p->after && w->p->shape == SPH_PAIR))
+    if (doubles && (w->p->before || w->p->after || w->p->shape == SPH_POINT))
+        w->laid = ((n_prop(w) * sizeof(sph_column) + 63) / 64 + (doubles * 8 + 63) / 64 + 2) * 64;
+    w->room = w->laid + closing_room(&w->closing, CHUNK);
+    if (!w->room)
         return 0;
-    w->room = ((n_prop(w) * sizeof(sph_column) + 63) / 64 + (doubles * 8 + 63) / 64 + 2) * 64;
     w->scratch = aligned_alloc(64, (size_t)w->r->threads * w->room);
     return w->scratch ? 0 : error_memory(e, "columns in doubles", (size_t)w->r->threads * w->room);
+}
+
+static int run_stages(struct work *w, struct error *e)
+{
+    const struct pass *p = w->p;
+    int status = 0;
+    w->stage[w->n_stage++] = STAGE_RESET;
+    if (p->before)
+        w->stage[w->n_stage++] = STAGE_BEFORE;
+    w->stage[w->n_stage++] = p->shape == SPH_POINT ? STAGE_POINT : STAGE_SWEEP;
+    if (p->after)
+        w->stage[w->n_stage++] = STAGE_AFTER;
+    if (p->local)
+        status = do_stages(w, 0, w->n_stage, e);
+    for (size_t k = 0; !status && !p->local && k < w->n_stage; k++)
+        status = do_stages(w, k, k + 1, e);
+    if (!status)
+        closing_end(&w->closing);
+    return status;
 }
 
 int chunks_run(struct run *r, struct pass *p, const struct ranges *ranges, struct error *e)
 {
     struct work w = {.r = r, .p = p, .ranges = ranges};
-    int status = 0;
     batch_alone(&w);
     w.pair = calloc(p->n_src + 1, sizeof *w.pair);
-    if (!w.pair)
-        return error_memory(e, "a pass", p->n_src * sizeof *w.pair);
-    for (size_t s = 0; p->shape == SPH_PAIR && s < p->n_src; s++)
+    int status = w.pair ? 0 : error_memory(e, "a pass", p->n_src * sizeof *w.pair);
+    for (size_t s = 0; !status && p->shape == SPH_PAIR && s < p->n_src; s++)
         batch_pair(&w, s);
-    status = make_room(&w, e);
-    w.stage[w.n_stage++] = STAGE_RESET;
-    if (p->before)
-        w.stage[w.n_stage++] = STAGE_BEFORE;
-    w.stage[w.n_stage++] = p->shape == SPH_POINT ? STAGE_POINT : STAGE_SWEEP;
-    if (p->after)
-        w.stage[w.n_stage++] = STAGE_AFTER;
-    if (!status && p->local)
-        status = do_stages(&w, 0, w.n_stage, e);
-    for (size_t k = 0; !status && !p->local && k < w.n_stage; k++)
-        status = do_stages(&w, k, k + 1, e);
+    if (!status)
+        status = closing_begin(&w.closing, r, p, ranges->n, e);
+    if (!status)
+        status = make_room(&w, e);
+    if (!status)
+        status = run_stages(&w, e);
+    closing_free(&w.closing);
     free(w.pair);
     free(w.scratch);
     return status;

@@ -56,10 +56,67 @@ static struct cloud cloud_of(const struct run *r, size_t array, size_t frame, bo
     const struct plan_array *a = &r->plan->array[array];
     struct cloud cloud = {.dim = r->plan->dim, .scale = support(r->plan)};
     cloud.n = a->p.n + (ghosts ? a->p.n_ghost : 0);
-    cloud.h = a->p.column[reach_in(r, frame, array)].data;
+    const struct column *h = &a->p.column[reach_in(r, frame, array)];
+    cloud.h = h->size == sizeof(double) ? h->data : r->wide_h[array];
     for (int c = 0; c < r->plan->dim; c++)
         cloud.x[c] = plane_of(a, place_in(r, frame, array), c);
     return cloud;
+}
+
+/* Whoever makes lists and ghosts wants h in doubles. Where it is held in floats, which is where nothing
+ * changes it, they are there while it does; in between clouds have no h, and it counts as unchanged. */
+static int widen_h(struct run *r, struct error *e)
+{
+    for (size_t a = 0; a < r->plan->n_array; a++) {
+        const struct particles *p = &r->plan->array[a].p;
+        const struct column *h = &p->column[r->plan->array[a].smoothing];
+        const size_t n = p->n + p->n_ghost;
+        if (h->size == sizeof(double))
+            continue;
+        double *wide = realloc(r->wide_h[a], (n + PARTICLES_PAD) * sizeof *wide);
+        if (!wide)
+            return error_memory(e, "smoothing lengths", n * sizeof *wide);
+        column_load(h, 0, 0, n, wide);
+        memset(wide + n, 0, PARTICLES_PAD * sizeof *wide);
+        r->wide_h[a] = wide;
+    }
+    return 0;
+}
+
+/* Places, likewise: the column itself goes into doubles, and into quanta when there are lists. */
+static int widen_places(struct run *r, struct error *e)
+{
+    for (size_t a = 0; a < r->plan->n_array; a++) {
+        struct plan_array *pa = &r->plan->array[a];
+        if (pa->in_quanta && particles_hold(&pa->p, pa->position, sizeof(double), false, e))
+            return -1;
+    }
+    return 0;
+}
+
+static int narrow_places(struct run *r, struct error *e)
+{
+    for (size_t a = 0; a < r->plan->n_array; a++) {
+        struct plan_array *pa = &r->plan->array[a];
+        if (!pa->in_quanta)
+            continue;
+        if (particles_hold_quanta(&pa->p, pa->position, r->centre, r->quantum, e))
+            return -1;
+        for (uint32_t k = 0; k < pa->p.column[pa->position].ncomp; k++)
+            if (any_not_finite4(pa->p.column[pa->position].low +
+                                    k * pa->p.column[pa->position].plane,
+                                pa->p.n + pa->p.n_ghost))
+                return error_set(e, EXIT_RUN, "a particle of array \"%s\" is nowhere", pa->p.name);
+    }
+    return 0;
+}
+
+static void forget_h(struct run *r)
+{
+    for (size_t a = 0; a < r->plan->n_array; a++) {
+        free(r->wide_h[a]);
+        r->wide_h[a] = NULL;
+    }
 }
 
 /* The arrays that take part in a frame: their clouds; how many. */
@@ -72,10 +129,68 @@ static size_t clouds_of(const struct run *r, size_t frame, struct cloud *cloud)
     return n;
 }
 
+struct skin_change run_change(const struct run *r, size_t array, size_t first, size_t n,
+                              const double *const *x)
+{
+    struct cloud cloud = cloud_of(r, array, 0, false);
+    const struct skin *kept = r->kept;
+    for (size_t a = 0; a < array; a++)
+        kept += in_frame(r, 0, a);
+    if (!in_frame(r, 0, array))
+        return (struct skin_change){0.0, INFINITY};
+    if (kept->n != cloud.n)
+        return (struct skin_change){NAN, NAN};
+    cloud.n = n;
+    for (int c = 0; c < cloud.dim; c++)
+        cloud.x[c] = x[c];
+    cloud.h = cloud.h ? cloud.h + first : NULL;
+    const struct skin part = skin_part(kept, first, n);
+    return skin_change(&part, &cloud, r->skin, 1);
+}
+
+/* Of an array whose places are held in quanta, all: a piece of them in doubles at a time. */
+static struct skin_change change_in_quanta(const struct run *r, size_t array)
+{
+    const struct plan_array *a = &r->plan->array[array];
+    const long n = (long)a->p.n;
+    double moved = 0.0, room = INFINITY, none = 0.0;
+    if (r->has_change[array])
+        return r->change[array];
+#pragma omp parallel for schedule(static) num_threads(r->threads) if (n > 20000)                   \
+    reduction(max : moved) reduction(min : room) reduction(+ : none)
+    for (long first = 0; first < n; first += SKIN_PIECE) {
+        double x[3][SKIN_PIECE];
+        const double *at[3] = {x[0], x[1], x[2]};
+        const size_t some = n - first < SKIN_PIECE ? (size_t)(n - first) : SKIN_PIECE;
+        for (uint32_t c = 0; c < a->p.column[a->position].ncomp; c++)
+            column_load(&a->p.column[a->position], c, (size_t)first, some, x[c]);
+        const struct skin_change here = run_change(r, array, (size_t)first, some, at);
+        moved = here.moved > moved ? here.moved : moved;
+        room = here.room < room ? here.room : room;
+        none += here.moved * 0.0;
+    }
+    return (struct skin_change){moved + none, room};
+}
+
 static bool holds(const struct run *r, size_t frame)
 {
-    const size_t n = clouds_of(r, frame, r->cloud);
-    return skin_holds(r->kept + frame * r->plan->n_array, r->cloud, n, r->skin, r->threads);
+    const struct skin *kept = r->kept + frame * r->plan->n_array;
+    double moved = 0.0, room = INFINITY;
+    for (size_t a = 0; a < r->plan->n_array; a++) {
+        if (!in_frame(r, frame, a))
+            continue;
+        const struct plan_array *pa = &r->plan->array[a];
+        const struct cloud cloud = cloud_of(r, a, frame, false);
+        const struct skin_change here = pa->p.column[pa->position].quantum > 0.0
+                                            ? change_in_quanta(r, a)
+                                            : skin_change(kept, &cloud, r->skin, r->threads);
+        kept++;
+        if (!(here.moved < INFINITY))
+            return false;
+        moved = fmax(moved, here.moved);
+        room = fmin(room, here.room);
+    }
+    return 2.0 * moved <= room;
 }
 
 static int keep_places(struct run *r, size_t frame, struct error *e)
@@ -105,7 +220,7 @@ static int sort_array(struct run *r, size_t array, struct error *e)
         status = particles_permute(&a->p, order, e);
     free(order);
     for (size_t c = 0; c < a->p.n_column; c++)
-        r->mirror_old[array][c] = true;
+        r->mirror_old[array][c] = MIRROR_OLD;
     return status;
 }
 
@@ -133,7 +248,7 @@ static void find_range_of_h(struct run *r)
 {
     for (size_t a = 0; a < r->plan->n_array; a++) {
         const struct plan_array *pa = &r->plan->array[a];
-        const struct range h = range_of(pa->p.column[pa->smoothing].data, pa->p.n, r->threads);
+        const struct range h = range_of(cloud_of(r, a, 0, false).h, pa->p.n, r->threads);
         r->h_low[a] = h.least;
         r->h_high[a] = fmax(h.most, 0.0);
     }
@@ -190,8 +305,10 @@ static int make_frame(struct run *r, size_t frame, bool counted, struct error *e
  * yet to be set. They stay right while the particles stand as they stood. */
 static int make_lists(struct run *r, bool sorted, struct error *e)
 {
+    if (widen_h(r, e)) /* they stand in another order now */
+        return -1;
     find_range_of_h(r);
-    if (make_ghosts(r, e))
+    if (make_ghosts(r, e) || widen_h(r, e))
         return -1;
     if (sorted || !r->lists_made)
         memset(r->frame_made, false, r->plan->n_frame);
@@ -242,9 +359,12 @@ int run_lists(struct run *r, bool within, struct error *e)
     int status = 0;
     if (!r->lists_made || !holds(r, 0)) {
         bool sort = !within && (!r->lists_made || ++r->builds_since_sort >= BUILDS_PER_SORT);
-        if (!within) {
+        status = widen_places(r, e);
+        if (!within && !status) {
             for (size_t a = 0; a < r->plan->n_array; a++)
                 sides_wrap(&r->plan->scene->box, &r->plan->array[a].p);
+            if (sort)
+                status = widen_h(r, e);
             for (size_t a = 0; !status && sort && a < r->plan->n_array; a++)
                 status = sort_array(r, a, e);
             if (sort) {
@@ -254,6 +374,9 @@ int run_lists(struct run *r, bool within, struct error *e)
         }
         if (!status)
             status = make_lists(r, sort, e);
+        forget_h(r);
+        if (!status)
+            status = narrow_places(r, e);
         r->lists_made = !status;
         r->cost.list_builds++;
     }

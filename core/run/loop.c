@@ -37,8 +37,10 @@ static double energy(const struct totals *t)
 
 /* Drifts are the largest over the logged steps: energy relative to the first total (or its parts, where they cancel);
  * momentum relative to sum m |v|. */
-static void watch(struct loop *l)
+static int watch(struct loop *l, struct error *e)
 {
+    if (run_settle(&l->run, e))
+        return -1;
     run_totals(&l->run, &l->last);
     const struct totals *a = &l->first, *b = &l->last;
     double scale = fmax(fabs(energy(a)), fabs(a->kinetic) + fabs(a->internal));
@@ -55,6 +57,7 @@ static void watch(struct loop *l)
         if (!(fabs(dq) <= fabs(l->angular_drift[c])))
             l->angular_drift[c] = dq;
     }
+    return 0;
 }
 
 /* Arrays share a function, and with it the names of its reductions: one column of the log for all. */
@@ -115,6 +118,8 @@ static int write_snapshot(struct loop *l, struct error *e)
     struct particles *all = calloc(plan->n_array, sizeof *all);
     char *temporary = output_begin(l->out, name);
     int status = all && temporary ? 0 : error_memory(e, "a snapshot", plan->n_array * sizeof *all);
+    if (!status)
+        status = run_settle(&l->run, e);
     if (!status) {
         for (size_t a = 0; a < plan->n_array; a++)
             all[a] = plan->array[a].p;
@@ -211,6 +216,7 @@ static int one_step(struct loop *l, struct error *e)
     double goal = target(l);
     bool reaches = !(r->time + dt < goal);
     r->look = is_logged(l, r->step + 1, r->time + dt);
+    r->defer = !r->look && !reaches;
     if (run_advance(r, e))
         return -1;
     if (reaches)
@@ -227,8 +233,8 @@ static int after_step(struct loop *l, struct error *e)
     bool by_time = r->time >= l->next_log;
     const bool logged = last || is_logged(l, r->step, r->time);
     /* Sums over all particles: where they are written. Rates are looked at in every evaluation. */
-    if (logged)
-        watch(l);
+    if (logged && watch(l, e))
+        return -1;
     if (!isfinite(energy(&l->last)) && finite_trace(r, e))
         return -1;
     if (!isfinite(energy(&l->last)))
@@ -255,7 +261,8 @@ static int steps(struct loop *l, struct error *e)
     if (run_passes(r, MOMENT_START, e) || run_passes(r, MOMENT_EVALUATE, e))
         return -1;
     run_totals(r, &l->first);
-    watch(l);
+    if (watch(l, e))
+        return -1;
     l->next_output = 1;
     l->next_log =
         isfinite(l->scene->output.log_every) ? l->begin + l->scene->output.log_every : INFINITY;
@@ -264,6 +271,8 @@ static int steps(struct loop *l, struct error *e)
     while (!finished(l))
         if (one_step(l, e) || after_step(l, e))
             return -1;
+    if (run_settle(r, e))
+        return -1;
     if (r->step && r->plan->integrator->op[r->plan->integrator->n_op - 1].kind != OP_CORRECT) {
         /* The last evaluation was in mid-step: bring what is derived up to the end. */
         if (run_passes(r, MOMENT_EVALUATE, e))
@@ -385,7 +394,7 @@ static struct summary_memory memory_of(const struct loop *l)
         const struct particles *p = &plan->array[a].p;
         for (size_t c = 0; c < p->n_column; c++) {
             const struct column *k = &p->column[c];
-            out.columns += (double)(k->ncomp * k->size * p->n) / n;
+            out.columns += (double)(k->ncomp * (k->size + (k->low ? sizeof(float) : 0)) * p->n) / n;
             out.mirrors += k->mirror ? (double)(k->ncomp * 4 * p->n) / n : 0.0;
         }
     }

@@ -1,6 +1,8 @@
 /* run/mirrors.c -- columns' copies in 4 bytes, for sweeps in floats: a state column's as floats; the
  * position's as whole numbers of a quantum, whose differences are exact wherever in the domain they are
- * taken. Made when a sweep reads them and their column has changed. */
+ * taken. Made when a sweep reads them and their column has changed. Only of what must be in doubles all
+ * the time (plan/precision.c): two floats, or quanta and a rest, need no mirror. */
+#include "base/clones.h"
 #include "run/run.h"
 #include <math.h>
 #include <omp.h>
@@ -8,36 +10,55 @@
 /* A quantum may be so much of the smallest smoothing length at most. */
 #define COARSEST 1e-5
 
+CLONES static int places(int32_t *restrict to, const double *restrict from, double centre,
+                         double inverse, size_t n)
+{
+    int bad = 0;
+#pragma omp simd reduction(| : bad)
+    for (size_t i = 0; i < n; i++) {
+        const double q = (from[i] - centre) * inverse;
+        bad |= !(fabs(q) < 1073741824.0); /* a difference of two has room */
+        to[i] = (int32_t)(q + copysign(0.5, q));
+    }
+    return bad;
+}
+
+bool mirror_places(const struct run *r, const struct column *c, uint32_t k, size_t first, size_t n)
+{
+    const size_t at = k * c->plane + first;
+    return !places((int32_t *)c->mirror + at, (const double *)c->data + at, r->centre[k],
+                   1.0 / r->quantum, n);
+}
+
+#define PIECE 2048
+
 int run_mirror(struct run *r, size_t array, int column, struct error *e)
 {
     const struct plan_array *a = &r->plan->array[array];
     const struct column *c = &a->p.column[column];
+    const uint8_t old = r->mirror_old[array][column];
+    const long begin = old == MIRROR_GHOSTS_OLD ? (long)a->p.n : 0;
     const long end = (long)(a->p.n + a->p.n_ghost);
-    if (!c->mirror || !r->mirror_old[array][column])
+    if (!c->mirror || old == MIRROR_FRESH)
         return 0;
     int bad = 0;
     for (uint32_t k = 0; k < c->ncomp; k++) {
         const double *from = (const double *)c->data + k * c->plane;
-        if (column == a->position) {
-            int32_t *to = (int32_t *)c->mirror + k * c->plane;
-            const double inverse = 1.0 / r->quantum, centre = r->centre[k];
-#pragma omp parallel for num_threads(r->threads) reduction(| : bad) if (end > 50000)
-            for (long i = 0; i < end; i++) {
-                const double q = (from[i] - centre) * inverse;
-                bad |= !(fabs(q) < 1073741824.0); /* a difference of two has room */
-                to[i] = (int32_t)(q + copysign(0.5, q));
-            }
-        } else {
-            float *to = (float *)c->mirror + k * c->plane;
-#pragma omp parallel for num_threads(r->threads) if (end > 50000)
-            for (long i = 0; i < end; i++)
-                to[i] = (float)from[i];
+        float *to = (float *)c->mirror + k * c->plane;
+#pragma omp parallel for num_threads(r->threads) reduction(| : bad) if (end - begin > 50000)
+        for (long first = begin; first < end; first += PIECE) {
+            const long last = end - first < PIECE ? end : first + PIECE;
+            if (column == a->position)
+                bad |= !mirror_places(r, c, k, (size_t)first, (size_t)(last - first));
+            else
+                for (long i = first; i < last; i++)
+                    to[i] = (float)from[i];
         }
     }
     if (bad)
         return error_set(e, EXIT_RUN, "a particle of array \"%s\" is nowhere, or left the domain",
                          a->p.name);
-    r->mirror_old[array][column] = false;
+    r->mirror_old[array][column] = MIRROR_FRESH;
     return 0;
 }
 
@@ -67,7 +88,7 @@ int run_mirror_frame(struct run *r, struct error *e)
     longest = 1.05 * longest + 4.0 * plan->kernel.support * plan->reach_scale * h_high;
     r->quantum = longest > 0.0 ? longest / 2147483648.0 : 1.0;
     for (size_t a = 0; a < plan->n_array; a++)
-        r->mirror_old[a][plan->array[a].position] = true;
+        r->mirror_old[a][plan->array[a].position] = MIRROR_OLD;
     bool floats = false;
     for (size_t i = 0; i < plan->n_pass; i++)
         floats = floats || plan->pass[i].real == SPH_F32;

@@ -1,6 +1,7 @@
 /* run/passes.c -- executes passes: ghosts and mirrors refreshed, what chunks.c does with the destinations,
  * sweeps repeated where a pass iterates, reductions taken. */
 #include "run/chunks.h"
+#include "run/closing.h"
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>
@@ -173,12 +174,16 @@ static int run_pass(struct run *r, struct pass *p, struct error *e)
     return status;
 }
 
-/* Right after its pass: later steps, and other functions, see what it came to. */
+/* Right after its pass, but for what that has reduced itself: later steps, and other functions, see what it
+ * came to. */
 static void reduce_pass(struct run *r, size_t pass)
 {
-    for (size_t i = 0; i < r->plan->n_reduction; i++)
-        if (r->plan->reduction[i].pass == pass)
-            r->reduced[i] = run_reduce(r, &r->plan->reduction[i]);
+    const struct pass *p = &r->plan->pass[pass];
+    for (size_t i = 0; i < r->plan->n_reduction; i++) {
+        const struct reduction *d = &r->plan->reduction[i];
+        if (d->pass == pass && !(closing_reduces(p, d) && r->plan->array[d->array].p.n > 0))
+            r->reduced[i] = run_reduce(r, d);
+    }
 }
 
 static void bound_dt(struct run *r)

@@ -101,7 +101,7 @@ static int apply(struct run *r, const struct pass *p, const sph_population *d, s
         }
         r->cost.created += c.n - c.n_kept;
         r->lists_made = false;
-        r->lists_suspect = true;
+        r->lists_suspect = r->suspect = true;
         memset(r->frozen, false, r->plan->n_frame);
         if (!status) {
             reset(&a->p, d->remove);

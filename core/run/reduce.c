@@ -1,54 +1,102 @@
 /* run/reduce.c -- the global sum, minimum or maximum of a column: summed in blocks of particles and the
  * blocks in order, so that it is the same for any number of threads. */
+#include "base/clones.h"
 #include "run/run.h"
 #include <math.h>
 #include <stdlib.h>
 
 #define BLOCK 4096
+#define LANES 8
+#define PIECE 256
 
-struct task {
-    const struct column *value, *mass; /* mass NULL: not weighted */
-    uint32_t op;
-};
-
-/* A NaN in a minimum or maximum comes through. */
-static double reduce_block(const struct task *t, size_t first, size_t end)
-{
-    double out = t->op == SPH_REDUCE_MIN ? INFINITY : t->op == SPH_REDUCE_MAX ? -INFINITY : 0.0;
-    bool bad = false;
-    for (size_t i = first; i < end; i++) {
-        const double value = column_get(t->value, 0, i);
-        if (t->op == SPH_REDUCE_SUM)
-            out += t->mass ? column_get(t->mass, 0, i) * value : value;
-        else if (t->op == SPH_REDUCE_MIN)
-            out = value < out ? value : out;
-        else
-            out = value > out ? value : out;
-        bad |= isnan(value);
+/* The extreme of n numbers, and whether one is none. In several at a time, or each would wait for the one
+ * before. */
+#define EXTREME(name, T, BETTER)                                                                   \
+    CLONES static double name(const T *value, size_t n, double start, bool *bad)                   \
+    {                                                                                              \
+        T best[LANES];                                                                             \
+        int none[LANES] = {0}, any = 0;                                                            \
+        for (size_t k = 0; k < LANES; k++)                                                         \
+            best[k] = (T)start;                                                                    \
+        for (size_t i = 0; i + LANES <= n; i += LANES)                                             \
+            for (size_t k = 0; k < LANES; k++) {                                                   \
+                best[k] = value[i + k] BETTER best[k] ? value[i + k] : best[k];                    \
+                none[k] |= isnan(value[i + k]);                                                    \
+            }                                                                                      \
+        for (size_t i = n / LANES * LANES; i < n; i++) {                                           \
+            best[0] = value[i] BETTER best[0] ? value[i] : best[0];                                \
+            none[0] |= isnan(value[i]);                                                            \
+        }                                                                                          \
+        for (size_t k = 0; k < LANES; k++) {                                                       \
+            best[0] = best[k] BETTER best[0] ? best[k] : best[0];                                  \
+            any |= none[k];                                                                        \
+        }                                                                                          \
+        *bad = any;                                                                                \
+        return (double)best[0];                                                                    \
     }
-    return bad && t->op != SPH_REDUCE_SUM ? NAN : out;
+EXTREME(least, double, <)
+EXTREME(most, double, >)
+EXTREME(least4, float, <)
+EXTREME(most4, float, >)
+
+static double extreme(const struct column *c, bool smallest, size_t first, size_t end)
+{
+    const double start = smallest ? INFINITY : -INFINITY;
+    const size_t n = end - first;
+    bool bad = false;
+    double out = start;
+    if (c->low) {
+        double value[PIECE];
+        for (size_t i = first; i < end; i += PIECE) {
+            const size_t some = end - i < PIECE ? end - i : PIECE;
+            bool none = false;
+            column_load(c, 0, i, some, value);
+            out = smallest ? least(value, some, out, &none) : most(value, some, out, &none);
+            bad |= none;
+        }
+    } else if (c->size == sizeof(float)) {
+        const float *value = (const float *)c->data + first;
+        out = smallest ? least4(value, n, start, &bad) : most4(value, n, start, &bad);
+    } else {
+        const double *value = (const double *)c->data + first;
+        out = smallest ? least(value, n, start, &bad) : most(value, n, start, &bad);
+    }
+    return bad ? NAN : out; /* it comes through */
+}
+
+double reduce_range(const struct column *value, const struct column *mass, uint32_t op,
+                    size_t first, size_t end)
+{
+    double out = 0.0;
+    if (op != SPH_REDUCE_SUM)
+        return extreme(value, op == SPH_REDUCE_MIN, first, end);
+    for (size_t i = first; i < end; i++) {
+        const double of = column_get(value, 0, i);
+        out += mass ? column_get(mass, 0, i) * of : of;
+    }
+    return out;
 }
 
 double run_reduce(const struct run *r, const struct reduction *d)
 {
     const struct plan_array *a = &r->plan->array[d->array];
-    const uint32_t use = d->declared->use;
+    const uint32_t use = d->declared->use, op = d->declared->op;
     const bool weighted = use == SPH_USE_INTERNAL || use == SPH_USE_POTENTIAL;
-    const struct task t = {&a->p.column[d->column], weighted ? &a->p.column[a->mass] : NULL,
-                           d->declared->op};
+    const struct column *value = &a->p.column[d->column],
+                        *mass = weighted ? &a->p.column[a->mass] : NULL;
     const long blocks = (long)((a->p.n + BLOCK - 1) / BLOCK);
     double *part = malloc(((size_t)blocks + 1) * sizeof *part);
-    double out = reduce_block(&t, 0, 0);
+    double out = reduce_range(value, mass, op, 0, 0);
 #pragma omp parallel for schedule(static) num_threads(r->threads) if (part && blocks > 4)
     for (long k = 0; k < (part ? blocks : 0); k++) {
         const size_t end = ((size_t)k + 1) * BLOCK;
-        part[k] = reduce_block(&t, (size_t)k * BLOCK, end < a->p.n ? end : a->p.n);
+        part[k] = reduce_range(value, mass, op, (size_t)k * BLOCK, end < a->p.n ? end : a->p.n);
     }
     for (long k = 0; k < blocks; k++) {
-        const size_t end = ((size_t)k + 1) * BLOCK;
+        const size_t first = (size_t)k * BLOCK, end = first + BLOCK;
         out = reduction_merge(
-            d->declared->op, out,
-            part ? part[k] : reduce_block(&t, (size_t)k * BLOCK, end < a->p.n ? end : a->p.n));
+            op, out,
+            part ? part[k] : reduce_range(value, mass, op, first, end < a->p.n ? end : a->p.n));
     }
     free(part);
     return out;

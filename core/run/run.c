@@ -38,7 +38,8 @@ static int hold(struct plan *plan, struct error *e)
     for (size_t a = 0; a < plan->n_array; a++) {
         struct plan_array *pa = &plan->array[a];
         for (size_t c = 0; c < pa->p.n_column; c++)
-            if ((pa->in_floats[c] && particles_hold(&pa->p, (int)c, sizeof(float), e)) ||
+            if ((pa->in_floats[c] &&
+                 particles_hold(&pa->p, (int)c, sizeof(float), pa->in_two[c], e)) ||
                 (pa->mirrored[c] && particles_mirror(&pa->p, (int)c, e)))
                 return -1;
     }
@@ -47,15 +48,9 @@ static int hold(struct plan *plan, struct error *e)
 
 static bool changes_h(const struct plan *plan)
 {
-    for (size_t a = 0; a < plan->n_array; a++) {
-        const struct plan_array *pa = &plan->array[a];
-        for (size_t k = 0; k < pa->n_rate; k++)
-            if (pa->rate[k].property == pa->smoothing)
-                return true;
-        for (size_t i = 0; i < plan->n_pass; i++)
-            if (pass_writes(&plan->pass[i], a, pa->smoothing))
-                return true;
-    }
+    for (size_t a = 0; a < plan->n_array; a++)
+        if (plan_changes(plan, a, plan->array[a].smoothing))
+            return true;
     return false;
 }
 
@@ -69,19 +64,24 @@ int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool 
     r->h_fixed = !changes_h(plan);
     r->hooks = (struct sph_run){r, hook_reduction, hook_propose};
     r->proposed = INFINITY;
+    r->suspect = true;
     r->ghosts = calloc(n + 1, sizeof *r->ghosts);
     r->list = calloc(plan->n_list + 1, sizeof *r->list);
     r->kept = calloc(n * plan->n_frame + 1, sizeof *r->kept);
     r->cloud = calloc(n + 1, sizeof *r->cloud);
+    r->change = calloc(n + 1, sizeof *r->change);
+    r->has_change = calloc(n + 1, sizeof *r->has_change);
     r->frame_made = calloc(plan->n_frame + 1, sizeof *r->frame_made);
     r->frozen = calloc(plan->n_frame + 1, sizeof *r->frozen);
     r->stale = calloc(n + 1, sizeof *r->stale);
     r->mirror_old = calloc(n + 1, sizeof *r->mirror_old);
+    r->wide_h = calloc(n + 1, sizeof *r->wide_h);
     r->h_low = calloc(2 * n + 1, sizeof *r->h_low);
     r->h_high = r->h_low + n;
     r->reduced = calloc(plan->n_reduction + 1, sizeof *r->reduced);
-    if (!r->ghosts || !r->list || !r->kept || !r->cloud || !r->frame_made || !r->frozen ||
-        !r->stale || !r->mirror_old || !r->h_low || !r->reduced)
+    if (!r->ghosts || !r->list || !r->kept || !r->cloud || !r->change || !r->has_change ||
+        !r->frame_made || !r->frozen || !r->stale || !r->mirror_old || !r->wide_h || !r->h_low ||
+        !r->reduced)
         return error_memory(e, "the run", n * n * sizeof *r->list);
     for (size_t i = 0; i < plan->n_reduction; i++)
         r->reduced[i] = NAN;
@@ -91,7 +91,7 @@ int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool 
         r->mirror_old[a] = malloc((columns + 1) * sizeof *r->mirror_old[a]);
         if (!r->stale[a] || !r->mirror_old[a])
             return error_memory(e, "the run", columns);
-        memset(r->mirror_old[a], true, columns);
+        memset(r->mirror_old[a], MIRROR_OLD, columns);
     }
     if (hold(plan, e))
         return -1;
@@ -109,6 +109,8 @@ void run_free(struct run *r)
             free(r->stale[a]);
         if (r->mirror_old)
             free(r->mirror_old[a]);
+        if (r->wide_h)
+            free(r->wide_h[a]);
     }
     for (size_t k = 0; r->kept && k < n * r->plan->n_frame; k++)
         skin_fini(&r->kept[k]);
@@ -118,10 +120,13 @@ void run_free(struct run *r)
     free(r->list);
     free(r->kept);
     free(r->cloud);
+    free(r->change);
+    free(r->has_change);
     free(r->frame_made);
     free(r->frozen);
     free(r->stale);
     free(r->mirror_old);
+    free(r->wide_h);
     free(r->h_low);
     free(r->reduced);
     *r = (struct run){0};

@@ -25,6 +25,8 @@ struct run_cost {
     uint64_t particle_updates, pairs, list_builds, sorts, unfinished, created;
 };
 
+enum { MIRROR_FRESH, MIRROR_OLD, MIRROR_GHOSTS_OLD };
+
 struct run {
     struct plan *plan;
     int threads;
@@ -36,13 +38,16 @@ struct run {
     struct ghosts *ghosts;   /* [array] */
     struct group_list *list; /* [plan->n_list] */
     struct skin *kept; /* [frame * n_array + k]: of the frame's k-th array, when lists were made */
-    struct cloud *cloud; /* [array]: room for clouds */
-    bool *frame_made;    /* [frame]: the lists of frames but 0 are made when a pass asks for them */
-    bool *frozen;        /* [frame]: the copies of a frozen one are made */
-    bool **stale;        /* [array][column]: ghosts hold old values */
-    bool **mirror_old;   /* [array][column]: the mirror does */
+    struct cloud *cloud;        /* [array]: room for clouds */
+    struct skin_change *change; /* [array]: of places since then, if has_change: seen in passing */
+    bool *has_change;
+    bool *frame_made; /* [frame]: the lists of frames but 0 are made when a pass asks for them */
+    bool *frozen;     /* [frame]: the copies of a frozen one are made */
+    bool **stale;     /* [array][column]: ghosts hold old values */
+    uint8_t **mirror_old;      /* [array][column]: the mirror does: MIRROR_... */
     double centre[3], quantum; /* of positions' mirrors: x = centre + quantum * a whole number */
     bool h_fixed;              /* no pass and no rate changes any h */
+    double **wide_h;           /* [array]: of h held in floats, in doubles while lists are made */
     double *h_low, *h_high;    /* [array]: range of h when the lists were made, ghosts included */
     bool lists_made,
         lists_suspect; /* suspect: something moved or grew since they were last checked */
@@ -53,6 +58,12 @@ struct run {
     struct run_cost cost;
     struct audit *audit; /* NULL: off */
     bool look;           /* all that passes write in this step is looked at: finite.c */
+    bool suspect;        /* a rate may be no number */
+    /* advance.c */
+    double correct; /* while a correction follows the evaluation: its factor; else 0 */
+    bool defer;     /* the next step may do what is left of this one: run_settle */
+    size_t left;    /* operations left, from the table's end; dt: left_dt */
+    double left_dt;
 };
 
 int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool audit,
@@ -65,13 +76,19 @@ void run_free(struct run *r);
 int run_lists(struct run *r, bool within, struct error *e);
 /* The lists of another frame than that of positions are there, and right. */
 int run_frame(struct run *r, size_t frame, struct error *e);
+/* What has changed of n particles from `first` on, a multiple of SKIN_PIECE, since the lists of positions were
+ * made; they stand at x[component] now. */
+struct skin_change run_change(const struct run *r, size_t array, size_t first, size_t n,
+                              const double *const *x);
 /* Ghosts of this column get their parents' values, if they hold old ones. */
 void run_refresh(struct run *r, size_t array, int column);
 /* A column was written: what copies it is old. */
 static inline void run_changed(struct run *r, size_t array, int column)
 {
     r->stale[array][column] = r->plan->array[array].p.n_ghost > 0;
-    r->mirror_old[array][column] = true;
+    r->mirror_old[array][column] = MIRROR_OLD;
+    if (column == r->plan->array[array].position || column == r->plan->array[array].smoothing)
+        r->has_change[array] = false;
 }
 
 /* Bytes held beside the particles' columns. */
@@ -88,8 +105,14 @@ int run_mirror(struct run *r, size_t array, int column, struct error *e);
  * floats would not tell particles apart. */
 int run_mirror_frame(struct run *r, struct error *e);
 
+/* mirrors.c: of n positions' component k from `first` on; false: some have no place in the frame. */
+bool mirror_places(const struct run *r, const struct column *c, uint32_t k, size_t first, size_t n);
+
 /* reduce.c: a reduction of its column as it is now. */
 double run_reduce(const struct run *r, const struct reduction *d);
+/* reduce.c: over particles [first, end); mass NULL: not weighted. */
+double reduce_range(const struct column *value, const struct column *mass, uint32_t op,
+                    size_t first, size_t end);
 
 /* Two values of one reduction, over different particles. A NaN comes through. */
 static inline double reduction_merge(uint32_t op, double a, double b)
@@ -109,16 +132,23 @@ sph_batch run_batch(const struct run *r, const struct use *u, const sph_column *
 /* population.c. Removes and creates what functions have asked for at the end of a step. */
 int run_population(struct run *r, struct error *e);
 
-/* advance.c. One step of the integrator with dt = r->dt. */
+/* advance.c. One step of the integrator with dt = r->dt. With r->defer, and if no pass follows, what comes
+ * after its last evaluation is left for the next step to do, which has the particles in its hands anyway. */
 int run_advance(struct run *r, struct error *e);
+/* advance.c. Does what was left, if anything: before anybody looks at the state. */
+int run_settle(struct run *r, struct error *e);
 
 /* finite.c: each fails (EXIT_RUN) naming pass, property, particle and place. What a pass has
  * just written (working storage aside, which may hold anything) is a number. */
 int finite_pass(const struct run *r, const struct pass *p, struct error *e);
 /* After an evaluation: all rates are finite. */
-int finite_rates(const struct run *r, struct error *e);
+int finite_rates(struct run *r, struct error *e);
 /* When something else is no number: the first pass of which something is. 0: there is none. */
 int finite_trace(const struct run *r, struct error *e);
+
+/* finite.c: is one of n numbers not finite? */
+bool any_not_finite(const double *value, size_t n);
+bool any_not_finite4(const float *value, size_t n);
 
 /* totals.c */
 void run_totals(const struct run *r, struct totals *t);

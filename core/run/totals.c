@@ -3,35 +3,53 @@
 #include "run/run.h"
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define BLOCK 4096
+#define PIECE 256 /* in doubles at a time */
 
-static void add_block(const struct plan_array *a, int dim, size_t first, size_t end,
-                      struct totals *t)
+/* Component k of a piece of a column, or zeros where there is none. */
+static void load(const struct plan_array *a, int column, uint32_t k, size_t first, size_t n,
+                 double *to)
 {
-    const struct particles *p = &a->p;
-    const struct column *m = &p->column[a->mass], *x = &p->column[a->position];
-    const struct column *v = a->velocity >= 0 ? &p->column[a->velocity] : NULL;
-    for (size_t i = first; i < end; i++) {
-        double at[3] = {0.0, 0.0, 0.0}, w[3] = {0.0, 0.0, 0.0}, v2 = 0.0, x2 = 0.0;
-        const double mass = column_get(m, 0, i);
-        for (int c = 0; c < dim; c++) {
-            at[c] = column_get(x, (uint32_t)c, i);
-            if (v)
-                w[c] = column_get(v, (uint32_t)c, i);
-            v2 += w[c] * w[c];
-            x2 += at[c] * at[c];
-        }
-        t->mass += mass;
-        t->kinetic += 0.5 * mass * v2;
-        for (int c = 0; c < 3; c++) {
-            t->momentum[c] += mass * w[c];
-            t->angular[c] +=
-                mass * (at[(c + 1) % 3] * w[(c + 2) % 3] - at[(c + 2) % 3] * w[(c + 1) % 3]);
-        }
-        t->momentum_scale += mass * sqrt(v2);
-        t->angular_scale += mass * sqrt(v2 * x2);
+    if (column >= 0 && k < a->p.column[column].ncomp)
+        column_load(&a->p.column[column], k, first, n, to);
+    else
+        memset(to, 0, n * sizeof *to);
+}
+
+static void add_piece(const struct plan_array *a, size_t first, size_t n, struct totals *sum)
+{
+    double m[PIECE], x[3][PIECE], v[3][PIECE];
+    struct totals t = *sum;
+    load(a, a->mass, 0, first, n, m);
+    for (uint32_t c = 0; c < 3; c++) {
+        load(a, a->position, c, first, n, x[c]);
+        load(a, a->velocity, c, first, n, v[c]);
     }
+    for (size_t i = 0; i < n; i++) {
+        double v2 = 0.0, x2 = 0.0;
+        for (int c = 0; c < 3; c++) {
+            v2 += v[c][i] * v[c][i];
+            x2 += x[c][i] * x[c][i];
+        }
+        t.mass += m[i];
+        t.kinetic += 0.5 * m[i] * v2;
+        for (int c = 0; c < 3; c++) {
+            const int d = (c + 1) % 3, f = (c + 2) % 3;
+            t.momentum[c] += m[i] * v[c][i];
+            t.angular[c] += m[i] * (x[d][i] * v[f][i] - x[f][i] * v[d][i]);
+        }
+        t.momentum_scale += m[i] * sqrt(v2);
+        t.angular_scale += m[i] * sqrt(v2 * x2);
+    }
+    *sum = t;
+}
+
+static void add_block(const struct plan_array *a, size_t first, size_t end, struct totals *t)
+{
+    for (; first < end; first += PIECE)
+        add_piece(a, first, end - first < PIECE ? end - first : PIECE, t);
 }
 
 static void add(struct totals *t, const struct totals *b)
@@ -54,7 +72,7 @@ static void add_array(const struct run *r, const struct plan_array *a, struct to
         for (long k = 0; k < blocks; k++) {
             struct totals one = {0};
             const size_t end = ((size_t)k + 1) * BLOCK;
-            add_block(a, r->plan->dim, (size_t)k * BLOCK, end < a->p.n ? end : a->p.n, &one);
+            add_block(a, (size_t)k * BLOCK, end < a->p.n ? end : a->p.n, &one);
             add(t, &one);
         }
         return;
@@ -62,7 +80,7 @@ static void add_array(const struct run *r, const struct plan_array *a, struct to
 #pragma omp parallel for schedule(static) num_threads(r->threads) if (blocks > 4)
     for (long k = 0; k < blocks; k++) {
         const size_t end = ((size_t)k + 1) * BLOCK;
-        add_block(a, r->plan->dim, (size_t)k * BLOCK, end < a->p.n ? end : a->p.n, &part[k]);
+        add_block(a, (size_t)k * BLOCK, end < a->p.n ? end : a->p.n, &part[k]);
     }
     for (long k = 0; k < blocks; k++)
         add(t, &part[k]);

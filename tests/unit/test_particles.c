@@ -108,6 +108,103 @@ static void views(void **state)
     particles_fini(&p);
 }
 
+/* Values of a column of two components that no float holds. */
+static double some_value(size_t k, size_t i)
+{
+    return (double)(k + 1) / 3 + (double)i * 1e-9;
+}
+
+static void assert_values(const struct particles *p, const uint32_t *order, double within)
+{
+    double laid[3];
+
+    for (uint32_t k = 0; k < 2; k++) {
+        column_load(&p->column[0], k, 1, 3, laid);
+        for (size_t i = 0; i < p->n; i++) {
+            double right = some_value(k, order ? order[i] : i);
+
+            assert_true(fabs(column_get(&p->column[0], k, i) - right) <= within);
+            assert_true(i < 1 || i > 3 || laid[i - 1] == column_get(&p->column[0], k, i));
+        }
+    }
+    assert_true(particles_is_valid(p));
+}
+
+/* Two floats, and quanta: nearly doubles, through all that moves particles about. */
+static void holds(void **state)
+{
+    static const uint32_t order[] = {3, 1, 4, 0, 2, 5, 9, 8, 7, 6};
+    static const double centre[] = {0.25, 0.75, 0}, far[] = {NAN, 1e30, 0.5};
+
+    (void)state;
+    for (int quanta = 0; quanta < 2; quanta++) {
+        struct particles p = make(2);
+        const struct column *c;
+        struct error e;
+
+        particles_add(&p, "x", "m", "position", SPH_VECTOR, &e);
+        particles_resize(&p, 10, 0, &e);
+        c = &p.column[0];
+        p.column[0].state = true;
+        for (uint32_t k = 0; k < 2; k++) {
+            for (size_t i = 0; i < 10; i++) {
+                column_set(c, k, i, some_value(k, i));
+            }
+        }
+        assert_int_equal(quanta ? particles_hold_quanta(&p, 0, centre, 0x1p-31, &e)
+                                : particles_hold(&p, 0, 4, true, &e),
+                         0);
+        assert_int_equal(particles_bytes(&p), 16);
+        assert_ptr_equal(particles_column4(&p, 0).data, c->data);
+        assert_values(&p, NULL, 0x1p-49);
+        for (size_t i = 0; quanta && i < 10; i++) {
+            assert_true(fabs(((int32_t *)c->data)[i] * 0x1p-31 + 0.25 - some_value(0, i)) <=
+                        0x1p-32);
+        }
+        assert_int_equal(particles_resize(&p, 10, 1000, &e), 0);
+        assert_int_equal(particles_permute(&p, order, &e), 0);
+        assert_values(&p, order, 0x1p-49);
+        assert_int_equal(particles_gather(&p, order, 10, &e), 0);
+        assert_int_equal(particles_hold(&p, 0, 8, false, &e), 0);
+        assert_null(p.column[0].low);
+        assert_true(fabs(particles_real(&p, "x", 0)[0] - some_value(0, order[order[0]])) <=
+                    0x1p-49);
+        assert_int_equal(quanta ? particles_hold_quanta(&p, 0, centre, 0x1p-31, &e)
+                                : particles_hold(&p, 0, 4, true, &e),
+                         0);
+        /* What is no number stays so, what is far away far away; one way and the other. */
+        column_store(c, 0, 0, 3, far);
+        for (size_t i = 0; i < 3; i++) {
+            column_set(c, 1, i, far[i]);
+        }
+        for (uint32_t k = 0; k < 2; k++) {
+            assert_true(isnan(column_get(c, k, 0)));
+            assert_true(column_get(c, k, 1) > 0.99e30);
+            assert_true(column_get(c, k, 2) == 0.5);
+        }
+        particles_fini(&p);
+    }
+}
+
+static void trades(void **state)
+{
+    struct particles p = make(1);
+    struct error e;
+
+    (void)state;
+    particles_add(&p, "a", "", "", SPH_SCALAR, &e);
+    particles_add(&p, "b", "", "", SPH_SCALAR, &e);
+    particles_resize(&p, 7, 0, &e);
+    particles_real(&p, "a", 0)[6] = 1;
+    particles_real(&p, "b", 0)[6] = 2;
+    particles_swap(&p, 0, 1);
+    assert_true(particles_real(&p, "a", 0)[6] == 2);
+    assert_true(particles_real(&p, "b", 0)[6] == 1);
+    assert_string_equal(p.column[0].name, "a");
+    assert_true(particles_is_valid(&p));
+    particles_fini(&p);
+}
+
 /* Planes of INT32 columns are aligned as well; the pad may be read (the sanitizers look on). */
 static void pads(void **state)
 {
@@ -289,8 +386,10 @@ static void guards(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(knows_types), cmocka_unit_test(refuses), cmocka_unit_test(adds_once),
-        cmocka_unit_test(views),       cmocka_unit_test(pads),    cmocka_unit_test(grows_and_keeps),
+        cmocka_unit_test(knows_types), cmocka_unit_test(refuses),
+        cmocka_unit_test(adds_once),   cmocka_unit_test(views),
+        cmocka_unit_test(holds),       cmocka_unit_test(trades),
+        cmocka_unit_test(pads),        cmocka_unit_test(grows_and_keeps),
         cmocka_unit_test(permutes),    cmocka_unit_test(guards),
     };
 

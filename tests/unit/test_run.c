@@ -109,6 +109,36 @@ static void test_second_order(void **state)
             }
 }
 
+/* What a step leaves for the next to do comes to the same bits, whenever it is settled. */
+static void test_deferred(void **state)
+{
+    static const char *const integrator[] = {"kdk", "pec"};
+    (void)state;
+    for (size_t k = 0; k < COUNT(integrator); k++) {
+        struct motion now, later;
+        struct error e = {0};
+        swing(&now, integrator[k], 0.1);
+        swing(&later, integrator[k], 0.1);
+        later.run.defer = true;
+        for (int n = 1; n < 8; n++) {
+            steps(&now, 0.01 * n, n);
+            steps(&later, 0.01 * n, n);
+            assert_true(later.run.left > 0);
+            assert_int_equal(run_settle(&later.run, &e), 0);
+            assert_int_equal(later.run.left, 0);
+            for (uint32_t c = 0; c < 2; c++)
+                for (size_t i = 0; i < now.rig.plan.array[0].p.n; i++) {
+                    assert_true(rig_real(&now.rig, 0, "x", c)[i] ==
+                                rig_real(&later.rig, 0, "x", c)[i]);
+                    assert_true(rig_real(&now.rig, 0, "v", c)[i] ==
+                                rig_real(&later.rig, 0, "v", c)[i]);
+                }
+        }
+        end(&now);
+        end(&later);
+    }
+}
+
 /* Without damping the leapfrog runs backwards as it ran forwards. */
 static void test_reversible(void **state)
 {
@@ -500,13 +530,21 @@ static void rates_add_up(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(rates_add_up),         cmocka_unit_test(test_second_order),
-        cmocka_unit_test(test_reversible),      cmocka_unit_test(test_drift),
-        cmocka_unit_test(test_all_pairs),       cmocka_unit_test(test_ghosts_refreshed),
-        cmocka_unit_test(test_beyond_the_side), cmocka_unit_test(test_pairs_at_start_and_finish),
-        cmocka_unit_test(test_several_sources), cmocka_unit_test(test_lost_particle),
-        cmocka_unit_test(test_unfinished_only), cmocka_unit_test(test_growth),
-        cmocka_unit_test(test_reductions),      cmocka_unit_test(test_threads),
+        cmocka_unit_test(rates_add_up),
+        cmocka_unit_test(test_second_order),
+        cmocka_unit_test(test_deferred),
+        cmocka_unit_test(test_reversible),
+        cmocka_unit_test(test_drift),
+        cmocka_unit_test(test_all_pairs),
+        cmocka_unit_test(test_ghosts_refreshed),
+        cmocka_unit_test(test_beyond_the_side),
+        cmocka_unit_test(test_pairs_at_start_and_finish),
+        cmocka_unit_test(test_several_sources),
+        cmocka_unit_test(test_lost_particle),
+        cmocka_unit_test(test_unfinished_only),
+        cmocka_unit_test(test_growth),
+        cmocka_unit_test(test_reductions),
+        cmocka_unit_test(test_threads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -50,19 +50,11 @@ static bool in_floats(const struct work *w, uint32_t k)
     return column_is_real(c) && c->size == sizeof(float);
 }
 
-/* The column, if the pass is given it as the destinations' geometry and it is not held in doubles. */
-static const struct column *to_lay_out(const struct work *w, int column)
+/* The smoothing lengths, if the pass is given them and they are not held in doubles. */
+static const struct column *smoothing_in_floats(const struct work *w)
 {
-    const struct column *c = &destinations(w)->column[column];
-    return w->p->shape == SPH_PAIR && c->size == sizeof(float) ? c : NULL;
-}
-
-/* Doubles that this takes. */
-static size_t geometry_room(const struct work *w)
-{
-    const struct plan_array *a = &w->r->plan->array[w->p->dst.array];
-    const struct column *x = to_lay_out(w, a->position), *h = to_lay_out(w, a->smoothing);
-    return (size_t)((x ? x->ncomp : 0) + (h ? 1 : 0)) * STRIDE;
+    const struct column *h = &destinations(w)->column[w->r->plan->array[w->p->dst.array].smoothing];
+    return w->p->shape == SPH_PAIR && h->size == sizeof(float) ? h : NULL;
 }
 
 #define WRITES (SPH_DST_WRITE | SPH_DST_SUM | SPH_DST_MAX | SPH_DST_MIN)
@@ -132,11 +124,8 @@ static double *lay_out_one(const struct column *c, double *at, uint64_t first, u
  * some. */
 static void lay_out(const struct work *w, char *scratch, sph_column *view, sph_batch *b)
 {
-    const struct plan_array *a = &w->r->plan->array[w->p->dst.array];
-    const struct column *x = to_lay_out(w, a->position), *h = to_lay_out(w, a->smoothing);
+    const struct column *h = smoothing_in_floats(w);
     double *at = (double *)(void *)scratch;
-    if (x)
-        at = lay_out_one(x, at, b->first, b->count, true, &b->x_dst);
     if (h)
         at = lay_out_one(h, at, b->first, b->count, true, &b->h_dst);
     for (uint32_t k = 0; k < n_prop(w); k++) {
@@ -151,7 +140,9 @@ static void lay_out(const struct work *w, char *scratch, sph_column *view, sph_b
 
 static void put_back(const struct work *w, const char *scratch, uint64_t first, uint64_t count)
 {
-    const double *at = (const double *)(const void *)scratch + geometry_room(w);
+    const double *at = (const double *)(const void *)scratch;
+    if (smoothing_in_floats(w))
+        at += STRIDE;
     for (uint32_t k = 0; k < n_prop(w); k++) {
         const struct column *c = &destinations(w)->column[w->p->dst.column[k]];
         if (!in_floats(w, k))
@@ -264,10 +255,8 @@ static void batch_alone(struct work *w)
     for (uint32_t k = 0; k < n_prop(w); k++)
         dst[k] = p->dst.column[k] < 0 ? (sph_column){0} : particles_column(&a->p, p->dst.column[k]);
     w->alone = run_batch(w->r, &p->use, dst, n_prop(w), a->p.n);
-    if (p->shape == SPH_PAIR) {
-        w->alone.x_dst = particles_column(&a->p, a->position);
+    if (p->shape == SPH_PAIR)
         w->alone.h_dst = particles_column(&a->p, a->smoothing);
-    }
 }
 
 static sph_column column_for(const struct work *w, const struct particles *p, int column)
@@ -323,7 +312,7 @@ static void batch_pair(struct work *w, size_t s)
 
 static int make_room(struct work *w, struct error *e)
 {
-    size_t doubles = geometry_room(w);
+    size_t doubles = smoothing_in_floats(w) ? STRIDE : 0;
     for (uint32_t k = 0; k < n_prop(w); k++)
         if (w->p->dst.column[k] >= 0 && in_floats(w, k))
             doubles += (size_t)destinations(w)->column[w->p->dst.column[k]].ncomp * STRIDE;

@@ -93,9 +93,9 @@ typedef struct sph_batch {
     double quantum;
     uint32_t uniform_h; /* pair functions: 1: every h of both arrays is the same number */
     uint32_t reserved;
-    /* Position and smoothing length [the scene's unit of length], over which the list was made: the
-     * destination's in `before` and `after` too, the sources' in the sweep alone; NULL data for
-     * point functions. */
+    /* Position and smoothing length [the scene's unit of length], over which the list was made: in
+     * the sweep; h_dst in `before` and `after` too. Otherwise the data are NULL: who wants positions
+     * there declares the property "x". */
     sph_column x_dst, x_src, h_dst, h_src;
     /* The declared properties, in declared order. src[k].data is NULL unless SPH_SRC_READ; src is
      * for `run` of a pair function alone. */

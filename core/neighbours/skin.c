@@ -2,6 +2,8 @@
  * clouds; owns what it keeps. */
 #include "neighbours/skin.h"
 
+#include "neighbours/range.h"
+
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
@@ -95,9 +97,10 @@ SKIN_INLINE void block_measure(struct skin_block *b, const struct cloud *c, size
 }
 
 SKIN_INLINE void block_encode(const struct skin_block *b, const struct cloud *c, size_t first,
-                              size_t n, uint16_t *code)
+                              size_t n, bool even, uint16_t *code)
 {
     const double *h = c->h + first, part = b->h > 0 ? 1 / b->h : 0;
+    int columns = c->dim;
 
     for (int a = 0; a < c->dim; a++) {
         const double *x = c->x[a] + first, low = b->low[a];
@@ -110,14 +113,16 @@ SKIN_INLINE void block_encode(const struct skin_block *b, const struct cloud *c,
             code[(size_t)a * BLOCK + k] = (uint16_t)(int32_t)(q < CODE_MOST ? q : CODE_MOST);
         }
     }
-    code += (size_t)c->dim * BLOCK;
+    if (!even) {
+        columns++;
 #pragma omp simd
-    for (size_t k = 0; k < n; k++) {
-        code[k] = code_of(h[k] * part);
+        for (size_t k = 0; k < n; k++) {
+            code[(size_t)c->dim * BLOCK + k] = code_of(h[k] * part);
+        }
     }
-    for (int a = -c->dim; a <= 0; a++) {
+    for (int a = 0; a < columns; a++) {
         for (size_t k = n; k < BLOCK; k++) {
-            code[(ptrdiff_t)k + a * BLOCK] = code[(ptrdiff_t)n - 1 + a * BLOCK];
+            code[(size_t)a * BLOCK + k] = code[(size_t)a * BLOCK + n - 1];
         }
     }
 }
@@ -133,9 +138,15 @@ static void block_copy(const struct cloud *c, size_t first, size_t n, double *ex
     }
 }
 
+/* Codes of a block: its positions', its h's unless all are the same. */
+static size_t codes_of(const struct skin *s)
+{
+    return (size_t)(s->dim + !s->even) * BLOCK;
+}
+
 static int reserve_blocks(struct skin *s, struct error *e)
 {
-    size_t codes = (size_t)(s->dim + 1) * BLOCK;
+    size_t codes = codes_of(s);
 
     if (s->n_block <= s->block_capacity) {
         return 0;
@@ -180,10 +191,10 @@ void skin_fini(struct skin *s)
 
 size_t skin_bytes(const struct skin *s)
 {
-    size_t codes = (size_t)(s->dim + 1) * BLOCK;
+    size_t exact = (size_t)(s->dim + 1) * BLOCK;
 
-    return s->block_capacity * (sizeof *s->block + codes * sizeof *s->code) +
-           s->exact_capacity * codes * sizeof *s->exact;
+    return s->block_capacity * (sizeof *s->block + codes_of(s) * sizeof *s->code) +
+           s->exact_capacity * exact * sizeof *s->exact;
 }
 
 /* -- What has changed -------------------------------------------------------------------------- */
@@ -213,7 +224,7 @@ SKIN_INLINE struct skin_change exact_change(const double *was, const struct clou
 /* The same where the places are kept in codes; h are taken a little less than they were. */
 SKIN_INLINE struct skin_change coded_change(const struct skin_block *b, const uint16_t *code,
                                             const struct cloud *c, size_t first, size_t n,
-                                            double relative, int dim, bool fixed)
+                                            double relative, int dim, bool fixed, bool even)
 {
     const double *x[3], *h = fixed ? NULL : c->h + first;
     double most = 0, room = INFINITY, none = 0;
@@ -226,7 +237,7 @@ SKIN_INLINE struct skin_change coded_change(const struct skin_block *b, const ui
 #endif
     for (size_t k = 0; k < n; k++) {
         /* Less that of code 0, which may stand for any smaller one. */
-        double was = b->h * (ratio_of(code[(size_t)dim * BLOCK + k]) - 0x1p-31);
+        double was = even ? b->h : b->h * (ratio_of(code[(size_t)dim * BLOCK + k]) - 0x1p-31);
         double left = fixed ? relative * was : (1 + relative) * was - h[k], r2 = 0;
 
 #pragma GCC unroll 3
@@ -243,31 +254,33 @@ SKIN_INLINE struct skin_change coded_change(const struct skin_block *b, const ui
     return (struct skin_change){sqrt(most) + b->lost + none, room * c->scale};
 }
 
+/* In a dimension, with what is known of h written out. */
+SKIN_INLINE struct skin_change coded_in(const struct skin_block *b, const uint16_t *code,
+                                        const struct cloud *c, size_t first, size_t n,
+                                        double relative, int dim, bool even)
+{
+    if (c->h) {
+        return even ? coded_change(b, code, c, first, n, relative, dim, false, true)
+                    : coded_change(b, code, c, first, n, relative, dim, false, false);
+    }
+    return even ? coded_change(b, code, c, first, n, relative, dim, true, true)
+                : coded_change(b, code, c, first, n, relative, dim, true, false);
+}
+
 SKIN_INLINE struct skin_change block_change(const struct skin *s, size_t at, const struct cloud *c,
                                             double relative)
 {
     const struct skin_block *b = &s->block[at];
     size_t first = at * BLOCK, n = smaller(BLOCK, c->n - first);
     size_t columns = (size_t)s->dim + 1;
-    const uint16_t *code = s->code + at * columns * BLOCK;
+    const uint16_t *code = s->code + at * codes_of(s);
 
     if (b->exact != EXACT_NO) {
         return exact_change(s->exact + b->exact * columns * BLOCK, c, first, n, relative);
     }
-    switch (s->dim + (c->h ? 0 : 3)) {
-    case 1:
-        return coded_change(b, code, c, first, n, relative, 1, false);
-    case 2:
-        return coded_change(b, code, c, first, n, relative, 2, false);
-    case 3:
-        return coded_change(b, code, c, first, n, relative, 3, false);
-    case 4:
-        return coded_change(b, code, c, first, n, relative, 1, true);
-    case 5:
-        return coded_change(b, code, c, first, n, relative, 2, true);
-    default:
-        return coded_change(b, code, c, first, n, relative, 3, true);
-    }
+#define CODED(dim) coded_in(b, code, c, first, n, relative, dim, s->even)
+    return s->dim == 1 ? CODED(1) : s->dim == 2 ? CODED(2) : CODED(3);
+#undef CODED
 }
 
 /* -- For this processor ------------------------------------------------------------------------ */
@@ -276,7 +289,7 @@ SKIN_INLINE struct skin_change block_change(const struct skin *s, size_t at, con
 struct skin_calls {
     void (*measure)(struct skin_block *b, const struct cloud *c, size_t first, size_t n);
     void (*encode)(const struct skin_block *b, const struct cloud *c, size_t first, size_t n,
-                   uint16_t *code);
+                   bool even, uint16_t *code);
     struct skin_change (*change)(const struct skin *s, size_t at, const struct cloud *c,
                                  double relative);
 };
@@ -288,9 +301,9 @@ struct skin_calls {
         block_measure(b, c, first, n);                                                             \
     }                                                                                              \
     target static void encode_##name(const struct skin_block *b, const struct cloud *c,            \
-                                     size_t first, size_t n, uint16_t *code)                       \
+                                     size_t first, size_t n, bool even, uint16_t *code)            \
     {                                                                                              \
-        block_encode(b, c, first, n, code);                                                        \
+        block_encode(b, c, first, n, even, code);                                                  \
     }                                                                                              \
     target static struct skin_change change_##name(const struct skin *s, size_t at,                \
                                                    const struct cloud *c, double relative)         \
@@ -320,11 +333,14 @@ int skin_keep(struct skin *s, const struct cloud *c, int threads, struct error *
 {
     const struct skin_calls *calls = calls_best();
     size_t columns = (size_t)c->dim + 1;
+    struct range h = range_of(c->h, c->n, threads);
+    bool even = !(h.least < h.most);
 
-    if (s->dim != c->dim) {
+    if (s->dim != c->dim || s->even != even) {
         skin_fini(s);
     }
     (void)threads;
+    s->even = even;
     s->dim = c->dim;
     s->n = c->n;
     s->n_block = (c->n + BLOCK - 1) / BLOCK;
@@ -346,7 +362,7 @@ int skin_keep(struct skin *s, const struct cloud *c, int threads, struct error *
         size_t first = b * BLOCK, n = smaller(BLOCK, c->n - first);
 
         if (block->exact == EXACT_NO) {
-            calls->encode(block, c, first, n, s->code + b * columns * BLOCK);
+            calls->encode(block, c, first, n, even, s->code + b * codes_of(s));
         } else {
             block_copy(c, first, n, s->exact + block->exact * columns * BLOCK);
         }
@@ -383,7 +399,7 @@ struct skin skin_part(const struct skin *s, size_t first, size_t n)
     part.n = n;
     part.n_block = (n + BLOCK - 1) / BLOCK;
     part.block += first / BLOCK;
-    part.code += first / BLOCK * (size_t)(s->dim + 1) * BLOCK;
+    part.code += first / BLOCK * codes_of(s);
     return part;
 }
 

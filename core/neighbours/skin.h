@@ -2,7 +2,7 @@
  * lists were made, kept compactly, against where they are.
  *
  * Positions are kept in 16 bits an axis within the box of 32 particles, h in 16 bits with 11
- * digits: some 10 bytes a particle in 3D. What rounding can have hidden is added to the
+ * digits unless they are all the same: some 8 to 10 bytes a particle in 3D. What rounding can have hidden is added to the
  * displacement and taken off h, so the answer errs on the safe side: by less than 0.001 of the
  * reach, 1 % of a skin of 0.1. Blocks that are too wide for that (with a particle that has flown
  * away) or whose h differ too much are kept as they are. */
@@ -15,9 +15,10 @@ struct skin_block;
 
 struct skin {
     int dim;
+    bool even; /* all h were the same, and are not kept one by one */
     size_t n, n_block, n_exact;
     struct skin_block *block;
-    uint16_t *code; /* [n_block][dim + 1][32]: positions and h */
+    uint16_t *code; /* [n_block][dim, and 1 unless even][32]: positions and h */
     double *exact;  /* [n_exact][dim + 1][32] */
     size_t block_capacity, exact_capacity;
 };

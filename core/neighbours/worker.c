@@ -12,8 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define BUNDLE_MOST 32    /* groups in a bundle */
-#define BUNDLE_SPREAD 3.0 /* half the diagonal of a bundle's box, in units of its smallest reach */
+#define BUNDLE_MOST 12    /* groups in a bundle */
+#define BUNDLE_SPREAD 2.0 /* half the diagonal of a bundle's box, in units of its smallest reach */
 
 /* Destinations [first, last) that are looked after together. */
 struct stretch {

@@ -97,3 +97,21 @@ void column_store(const struct column *c, uint32_t k, size_t first, size_t n, co
     else
         narrow((float *)c->data + at, from, n);
 }
+
+/* Into the cache of the second level; the first has no room to spare. */
+static void expect(const void *from, size_t bytes)
+{
+    for (size_t at = 0; at < bytes; at += 64)
+        __builtin_prefetch((const char *)from + at, 0, 2);
+}
+
+void column_expect(const struct column *c, uint32_t k, size_t first, size_t n)
+{
+    const size_t at = k * c->plane + first;
+
+    expect((const char *)c->data + at * c->size, n * c->size);
+    if (c->low)
+        expect(c->low + at, n * sizeof(float));
+    if (c->mirror)
+        expect((const char *)c->mirror + at * sizeof(float), n * sizeof(float));
+}

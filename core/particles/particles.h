@@ -96,6 +96,9 @@ static inline void column_set(const struct column *c, uint32_t k, size_t i, doub
 /* The same of n particles from `first` on. */
 void column_load(const struct column *c, uint32_t k, size_t first, size_t n, double *to);
 void column_store(const struct column *c, uint32_t k, size_t first, size_t n, const double *from);
+/* A hint that component k of these will be wanted soon: work that goes through columns in pieces asks for
+ * the next one, since no processor sees that many columns coming by itself. */
+void column_expect(const struct column *c, uint32_t k, size_t first, size_t n);
 
 struct particles {
     char *name;

@@ -47,6 +47,14 @@ static bool is_summed(const struct plan *plan, size_t array, int column)
     return false;
 }
 
+/* Where pairs work in floats so does what is made anew at each evaluation: pressures on the way to what the
+ * pairs read. */
+static void mark_made_anew(const struct plan_array *a, bool *touched)
+{
+    for (size_t c = 0; touched[a->position] && c < a->p.n_column; c++)
+        touched[c] = touched[c] || !a->p.column[c].state;
+}
+
 /* Columns whose doubles somebody needs: sums in doubles, particles that are born, the core. */
 static void keep_doubles(struct plan *plan, bool **doubles)
 {
@@ -63,10 +71,11 @@ static void keep_doubles(struct plan *plan, bool **doubles)
         }
     }
     /* Neighbours are looked for in doubles. An h that stays as it is can be laid out in them for that; places
-     * go into doubles and back. */
+     * go into doubles and back, which is worth its time in 3D alone: there memory bounds a run. */
     for (size_t a = 0; a < plan->n_array; a++) {
         const int h = plan->array[a].smoothing, x = plan->array[a].position;
-        doubles[a][x] = doubles[a][x] || plan->n_frame > 1 || is_summed(plan, a, x);
+        doubles[a][x] =
+            doubles[a][x] || plan->dim < 3 || plan->n_frame > 1 || is_summed(plan, a, x);
         doubles[a][h] = doubles[a][h] || plan->n_frame > 1 || plan_changes(plan, a, h);
     }
 }
@@ -124,6 +133,8 @@ int precision_decide(struct plan *plan, struct error *e)
         mark(p, floats);
         mark_geometry(plan, p, floats);
     }
+    for (size_t a = 0; !status && a < n; a++)
+        mark_made_anew(&plan->array[a], floats[a]);
     if (!status)
         keep_doubles(plan, doubles);
     for (size_t a = 0; a < n && floats; a++) {

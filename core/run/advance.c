@@ -186,6 +186,8 @@ static int run_chunk(const struct program *g, size_t first, double **at, double 
     const struct particles *p = &g->array->p;
     const size_t n = p->n - first < CHUNK ? p->n - first : CHUNK;
     int bad = 0;
+    for (size_t i = 0; first + 2 * CHUNK <= p->n && i < g->n_line; i++)
+        column_expect(&p->column[g->line[i].column], g->line[i].k, first + CHUNK, CHUNK);
     for (size_t i = 0; i < g->n_line; i++) {
         const struct line *l = &g->line[i];
         const struct column *c = &p->column[l->column];

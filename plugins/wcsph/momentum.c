@@ -27,25 +27,46 @@ static const sph_prop props[] = {
 #define SPH_LOOP_DEVICE wcsph_momentum_device
 #include <sph/pair-loop.h>
 
+enum { PIECE = 64 };
+
+/* Adds gravity; a2: the square of the whole. */
+static void add_gravity(const sph_batch *b, const struct wcsph_finish *at, uint64_t first, int n,
+                        double *restrict a2)
+{
+    for (int k = 0; k < n; k++)
+        a2[k] = 0.0;
+    for (uint32_t c = 0; c < b->dim; c++) {
+        const double g = b->param[at->gravity + c];
+        double *restrict a = (double *)b->dst[at->a].data + (size_t)c * b->dst[at->a].plane + first;
+        for (int k = 0; k < n; k++) {
+            a[k] += g;
+            a2[k] += a[k] * a[k];
+        }
+    }
+}
+
 /* Viscosity's bound is Monaghan's (1989, J. Comput. Phys. 82, 1, eq. 3.4) with |mu| <= h |div v|, of which
  * the continuity equation has just given -drho / rho; the force's is sqrt(h / |a|), in units of which the
- * scene's cfl is meant. */
+ * scene's cfl is meant. In pieces, so that several particles are worked on at once. */
 sph_status wcsph_finish(const sph_batch *b, const struct wcsph_finish *at)
 {
     const double alpha = b->param[at->alpha], beta = b->param[at->beta];
-    const double *h = b->h_dst.data, *rho = b->dst[at->rho].data, *cs = b->dst[at->cs].data;
-    const double *drho = b->dst[at->drho].data;
-    double *dt = b->dst[at->dt].data;
-    for (uint64_t i = b->first; i < b->first + b->count; i++) {
-        double a2 = 0.0;
-        for (uint32_t c = 0; c < b->dim; c++) {
-            double *a = (double *)b->dst[at->a].data + (size_t)c * b->dst[at->a].plane + i;
-            *a += b->param[at->gravity + c];
-            a2 += *a * *a;
+    const double of_cs = 1.0 + 0.6 * alpha, of_mu = 1.0 + 0.6 * beta;
+    double a2[PIECE];
+    for (uint64_t i = b->first, end = b->first + b->count; i < end; i += PIECE) {
+        const double *h = (const double *)b->h_dst.data + i;
+        const double *rho = (const double *)b->dst[at->rho].data + i;
+        const double *cs = (const double *)b->dst[at->cs].data + i;
+        const double *drho = (const double *)b->dst[at->drho].data + i;
+        double *restrict dt = (double *)b->dst[at->dt].data + i;
+        const int n = end - i < PIECE ? (int)(end - i) : PIECE;
+        add_gravity(b, at, i, n, a2);
+        for (int k = 0; k < n; k++) {
+            const double sound =
+                h[k] * rho[k] / (of_cs * cs[k] * rho[k] + of_mu * h[k] * fabs(drho[k]));
+            const double force = sqrt(h[k] / sqrt(a2[k]));
+            dt[k] = sound < force ? sound : force;
         }
-        const double mu = h[i] * fabs(drho[i] / rho[i]);
-        const double sound = h[i] / (cs[i] + 0.6 * (alpha * cs[i] + beta * mu) + mu);
-        dt[i] = fmin(sound, sqrt(h[i] / sqrt(a2)));
     }
     return SPH_OK;
 }

@@ -169,7 +169,7 @@ static void best_edge_follows_the_spacing(void **state)
     (void)state;
     for (int dim = 1; dim <= 3; dim++) {
         struct owned o = cloud_lattice(dim, dim == 3 ? 31 : dim == 2 ? 170 : 5000, 3);
-        double spacings = dim == 3 ? 3.9 : 3.2;
+        double spacings = dim == 3 ? 2.0 : 3.2;
 
         for (double h = 1.1; h < 1.6; h += 0.1) {
             for (size_t i = 0; i < o.c.n; i++) {

@@ -172,6 +172,9 @@ for precision, bar in (("double", 3e-12), ("mixed", {"": 4e-6, "x": 1.5e-8, "rho
 pairs = [[one["name"] for one in plan(scene)["passes"] if one["shape"] == "pair"] for scene in (drop, apart)]
 expect("fused passes", pairs[0] == ["wcsph-rates(drop)"], pairs[0])
 expect("passes apart", pairs[1] == ["wcsph-continuity(drop)", "wcsph-momentum(drop)"], pairs[1])
+# A list that one sweep walks in 2D reaches further.
+skins = [plan(scene)["skin"] for scene in (drop, apart, noh, changed(drop, neighbours={"skin": 0.2}))]
+expect("skins", skins == [0.15, 0.1, 0.1, 0.2], skins)
 fused = [one for one in plan(drop)["passes"] if one["shape"] == "pair"][0]
 expect("parts", fused["parts"] == ["wcsph-continuity", "wcsph-momentum"], fused)
 # What is advanced is held in two floats, in 3D positions in quanta and a rest; a pass that makes a rate alone

@@ -125,8 +125,8 @@ size_t group_list_bytes(const struct group_list *list);
  * taken. */
 int cell_order(const struct cloud *points, const int64_t *id, double cell, int threads,
                uint32_t *order, struct error *e);
-/* The edge that is best for lists, in mean spacings of the points: 3.9 in 3D, where a cell is then
- * divided into groups of two by two by two; 3.2 in 2D, where a group is then about as wide as long.
+/* The edge that is best for lists, in mean spacings of the points: 2 in 3D, where a group is then about
+ * as wide as long and the next one along x follows it; 3.2 in 2D, for the same.
  * Three reaches where those range widely, so that dense places are divided by their own density. */
 double cell_best(const struct cloud *points);
 

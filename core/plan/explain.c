@@ -240,10 +240,10 @@ void plan_print(const struct plan *plan, FILE *out)
 {
     const char *title = plan->scene->title;
     fprintf(out, "%s\n", title && title[0] ? title : plan->scene->doc->path);
-    fprintf(out, "  scheme %s, kernel %s, integrator %s, %d dimension%s, cfl %g, %s\n",
+    fprintf(out, "  scheme %s, kernel %s, integrator %s, %d dimension%s, cfl %g, %s, skin %g\n",
             plan->scheme_name ? plan->scheme_name : "none",
             plan->kernel_name ? plan->kernel_name : "none", plan->integrator->name, plan->dim,
-            plan->dim == 1 ? "" : "s", plan->cfl, precision_name[plan->precision]);
+            plan->dim == 1 ? "" : "s", plan->cfl, precision_name[plan->precision], plan->skin);
     fprintf(out, "arrays\n");
     for (size_t a = 0; a < plan->n_array; a++)
         print_array(plan, a, out);
@@ -312,6 +312,7 @@ cJSON *plan_json(const struct plan *plan)
     cJSON_AddStringToObject(root, "integrator", plan->integrator->name);
     cJSON_AddStringToObject(root, "kernel", plan->kernel_name ? plan->kernel_name : "");
     cJSON_AddNumberToObject(root, "cfl", plan->cfl);
+    cJSON_AddNumberToObject(root, "skin", plan->skin);
     cJSON_AddStringToObject(root, "precision", precision_name[plan->precision]);
     cJSON_AddNumberToObject(root, "expected_pairs_per_step", expected_pairs(plan));
     return root;

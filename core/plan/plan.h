@@ -154,6 +154,7 @@ struct plan {
     size_t n_list;
     enum precision precision;
     const struct neighbour_manager *manager; /* NULL: as it suits */
+    double skin;                             /* of neighbour lists, a fraction of the support */
     double reach_scale;                      /* largest over the functions */
     struct use *exact;                       /* of scene.compare, one each */
     int64_t next_id;                         /* of a particle yet to be made */

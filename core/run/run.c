@@ -58,8 +58,7 @@ int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool 
              struct error *e)
 {
     const size_t n = plan->n_array;
-    *r = (struct run){
-        .plan = plan, .threads = threads, .path = path, .skin = plan->scene->neighbours.skin};
+    *r = (struct run){.plan = plan, .threads = threads, .path = path, .skin = plan->skin};
     r->time = plan->scene->time.begin;
     r->h_fixed = !changes_h(plan);
     r->hooks = (struct sph_run){r, hook_reduction, hook_propose};

@@ -364,7 +364,7 @@ static int compile_neighbours(struct scene *s, const cJSON *node, struct error *
 {
     static const char *const keys[] = {"skin", "manager"};
     s->neighbours.node = node;
-    s->neighbours.skin = .1;
+    s->neighbours.skin = NAN;
     if (!node)
         return 0;
     if (json_keys(s->doc, node, keys, COUNT(keys), e) < 0 ||

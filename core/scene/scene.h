@@ -166,7 +166,7 @@ struct scene {
     } time;
     struct {
         const cJSON *node;
-        double skin;
+        double skin;         /* NAN: as the plan has it */
         const char *manager; /* NULL: the plan chooses */
     } neighbours;            /* optional key "neighbours": {"skin": 0.1, "manager": "octree"} */
     const char *precision;   /* "double", "mixed", "single"; NULL: the scheme's */

@@ -106,7 +106,7 @@ static sph_status SPH_LOOP_NAME(const sph_batch *b)
                 for (int c = 0; c < DIM; c++)
                     dx[c] = sph_dx[c];
                 sph_next = (size_t)sph_base + sph_steps[sph_k + 1 < sph_n ? sph_k + 1 : sph_k];
-                sph_r2 = (R){0};
+                sph_r2 = sph_num(0.0);
                 SPH_APART(sph_dx, sph_r2, sph_next)
                 sph_r = sph_sqrt(sph_r2);
                 sph_rinv = sph_rsqrt(sph_r2);

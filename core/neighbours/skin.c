@@ -402,19 +402,3 @@ struct skin skin_part(const struct skin *s, size_t first, size_t n)
     part.code += first / BLOCK * codes_of(s);
     return part;
 }
-
-bool skin_holds(const struct skin *s, const struct cloud *c, size_t n, double relative, int threads)
-{
-    double moved = 0, room = INFINITY;
-
-    for (size_t k = 0; k < n; k++) {
-        struct skin_change here = skin_change(&s[k], &c[k], relative, threads);
-
-        if (!(here.moved < INFINITY)) {
-            return false;
-        }
-        moved = here.moved > moved ? here.moved : moved;
-        room = here.room < room ? here.room : room;
-    }
-    return 2 * moved <= room;
-}

@@ -37,11 +37,19 @@ struct skin_change skin_change(const struct skin *s, const struct cloud *c, doub
 /* What was kept of n particles from `first` on, a multiple of SKIN_PIECE; memory is s's. */
 #define SKIN_PIECE 512
 struct skin skin_part(const struct skin *s, size_t first, size_t n);
-/* Whether lists with this relative skin over n clouds, each kept in one of s, still hold all pairs:
- * 2 * moved <= room over all particles of all clouds. False if a number is none, or the number of
- * particles has changed. */
-bool skin_holds(const struct skin *s, const struct cloud *c, size_t n, double relative,
-                int threads);
+/* Of two sets of particles: what has happened to both. A NaN comes through. */
+static inline struct skin_change skin_both(struct skin_change a, struct skin_change b)
+{
+    const double none = (a.moved + b.moved) * 0;
+
+    return (struct skin_change){(a.moved > b.moved ? a.moved : b.moved) + none,
+                                a.room < b.room ? a.room : b.room};
+}
+/* Whether lists still hold all pairs of the particles that this is of; not if a number is none. */
+static inline bool skin_holds(struct skin_change all)
+{
+    return 2 * all.moved <= all.room;
+}
 void skin_fini(struct skin *s);
 size_t skin_bytes(const struct skin *s);
 

@@ -175,7 +175,7 @@ static struct skin_change change_in_quanta(const struct run *r, size_t array)
 static bool holds(const struct run *r, size_t frame)
 {
     const struct skin *kept = r->kept + frame * r->plan->n_array;
-    double moved = 0.0, room = INFINITY;
+    struct skin_change all = {0.0, INFINITY};
     for (size_t a = 0; a < r->plan->n_array; a++) {
         if (!in_frame(r, frame, a))
             continue;
@@ -185,12 +185,9 @@ static bool holds(const struct run *r, size_t frame)
                                             ? change_in_quanta(r, a)
                                             : skin_change(kept, &cloud, r->skin, r->threads);
         kept++;
-        if (!(here.moved < INFINITY))
-            return false;
-        moved = fmax(moved, here.moved);
-        room = fmin(room, here.room);
+        all = skin_both(all, here);
     }
-    return 2.0 * moved <= room;
+    return skin_holds(all);
 }
 
 static int keep_places(struct run *r, size_t frame, struct error *e)

@@ -91,9 +91,8 @@ if (riemann < 0.5) {
 }
 
 /* The force of the pair, along dx: geometric mean of the volumes, corrected. */
-const R dw_i = sph_dw_q(K, r *hinv_i) * sph_ipow(hinv_i, DIM + 2);
-const R dw_j = sph_dw_q(K, r *hinv_j) * sph_ipow(hinv_j, DIM + 2);
-const R flux = m_j * p_star * (volume_i * dw_i + volume_j * dw_j) / (rho_i * rho_j);
+const R slope = sph_grad(K, volume_i, r, hinv_i) + sph_grad(K, volume_j, r, hinv_j);
+const R flux = m_j * p_star * slope / (rho_i * rho_j);
 for (int a = 0; a < DIM; a++)
     sph_sub(force[a], flux *dx[a]);
 sph_sub(power, flux *u_star *r);

@@ -166,13 +166,9 @@ SPH_INLINE B SPH_OF_ISA(sph_mask_of_)(M m)
 {
     return (B)_mm256_movm_epi32(m);
 }
-SPH_INLINE R SPH_OF_ISA(sph_add_where_)(M m, R sum, R a)
+SPH_INLINE R SPH_OF_ISA(sph_where_)(M m, R a, R b)
 {
-    return (R)_mm256_mask_blend_ps(m, (__m256)sum, (__m256)(sum + a));
-}
-SPH_INLINE R SPH_OF_ISA(sph_sub_where_)(M m, R sum, R a)
-{
-    return (R)_mm256_mask_blend_ps(m, (__m256)sum, (__m256)(sum - a));
+    return (R)_mm256_mask_blend_ps(m, (__m256)b, (__m256)a);
 }
 #else
 SPH_INLINE M SPH_OF_ISA(sph_within_)(R r2, R reach2, B number, B j)
@@ -184,13 +180,9 @@ SPH_INLINE B SPH_OF_ISA(sph_mask_of_)(M m)
 {
     return (B)_mm512_movm_epi64(m);
 }
-SPH_INLINE R SPH_OF_ISA(sph_add_where_)(M m, R sum, R a)
+SPH_INLINE R SPH_OF_ISA(sph_where_)(M m, R a, R b)
 {
-    return (R)_mm512_mask_blend_pd(m, (__m512d)sum, (__m512d)(sum + a));
-}
-SPH_INLINE R SPH_OF_ISA(sph_sub_where_)(M m, R sum, R a)
-{
-    return (R)_mm512_mask_blend_pd(m, (__m512d)sum, (__m512d)(sum - a));
+    return (R)_mm512_mask_blend_pd(m, (__m512d)b, (__m512d)a);
 }
 #endif
 #else
@@ -203,15 +195,19 @@ SPH_INLINE B SPH_OF_ISA(sph_mask_of_)(M m)
 {
     return m;
 }
+SPH_INLINE R SPH_OF_ISA(sph_where_)(M m, R a, R b)
+{
+    return SPH_OF_ISA(sph_select_)(m, a, b);
+}
+#endif
 SPH_INLINE R SPH_OF_ISA(sph_add_where_)(M m, R sum, R a)
 {
-    return SPH_OF_ISA(sph_select_)(m, sum + a, sum);
+    return SPH_OF_ISA(sph_where_)(m, sum + a, sum);
 }
 SPH_INLINE R SPH_OF_ISA(sph_sub_where_)(M m, R sum, R a)
 {
-    return SPH_OF_ISA(sph_select_)(m, sum - a, sum);
+    return SPH_OF_ISA(sph_where_)(m, sum - a, sum);
 }
-#endif
 
 /* -- Functions --------------------------------------------------------------------------------- */
 

@@ -418,8 +418,9 @@ static void bar_of(const char *what, struct ratio r, double limit)
 
 static void bars(const struct figures *f3, const struct figures *f2)
 {
-    printf("\nThe engine as the core runs it: best path, one h, a skin of 0.1, chunks of %d\n",
-           CHUNK);
+    printf(
+        "\nThe engine as the core runs it: best path, one h, a skin of 0.1 (a run in 2D: 0.15), chunks of %d\n",
+        CHUNK);
     bar_of("3D, double: a call for each pair takes as much more", f3->call[0], 6.5);
     bar_of("3D, mixed: a call for each pair takes as much more", f3->call[1], 9.0);
     bar_of("3D, double: two threads, wall time", f3->threads[0], 1.85);

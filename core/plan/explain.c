@@ -240,10 +240,11 @@ void plan_print(const struct plan *plan, FILE *out)
 {
     const char *title = plan->scene->title;
     fprintf(out, "%s\n", title && title[0] ? title : plan->scene->doc->path);
-    fprintf(out, "  scheme %s, kernel %s, integrator %s, %d dimension%s, cfl %g, %s, skin %g\n",
+    fprintf(out, "  scheme %s, kernel %s, integrator %s, %d dimension%s, cfl %g, %s\n",
             plan->scheme_name ? plan->scheme_name : "none",
             plan->kernel_name ? plan->kernel_name : "none", plan->integrator->name, plan->dim,
-            plan->dim == 1 ? "" : "s", plan->cfl, precision_name[plan->precision], plan->skin);
+            plan->dim == 1 ? "" : "s", plan->cfl, precision_name[plan->precision]);
+    fprintf(out, "  neighbour lists with a skin of %g of the support\n", plan->skin);
     fprintf(out, "arrays\n");
     for (size_t a = 0; a < plan->n_array; a++)
         print_array(plan, a, out);

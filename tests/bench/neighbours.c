@@ -136,7 +136,7 @@ static void skin(const struct cloud *c)
 
             check(skin_keep(&s, c, threads, &e), &e);
             middle = now(threads);
-            holds = skin_holds(&s, c, 1, SKIN, threads) && holds;
+            holds = skin_holds(skin_change(&s, c, SKIN, threads)) && holds;
             keep[threads - 1][k] = 1e9 * (middle - begin) / (double)c->n;
             look[threads - 1][k] = 1e9 * (now(threads) - middle) / (double)c->n;
         }

@@ -150,7 +150,7 @@ static void take_terms_of(struct trial *t, int k, uint64_t *begin)
     static const uint16_t none = 0;
     const struct group_list *list = &t->bench->list[k];
     sph_batch batch = batch_of(t, &best, k);
-    sph_span one = {0, 0, 1};
+    sph_span one = {0, 0, 1, 1};
 
     batch.begin = begin;
     batch.span = &one;

@@ -141,11 +141,15 @@ static size_t plain_near_leaves(const struct packed_box8 *boxes, size_t n, const
     return found;
 }
 
-/* The smallest over the lanes of a^2 - 2 a.b, and of the same less the lane's own reach^2. */
+/* The smallest over half of the lanes, from `first` on, of a^2 - 2 a.b, and of the same less the
+ * lane's own reach^2. */
 static inline void plain_nearest(const struct packed_leaf *p, const struct lanes *t, int dim,
-                                 float *any, float *own)
+                                 int first, float *any, float *own)
 {
-    for (int i = 0; i < 8; i++) {
+    for (int k = 0; k < LEAF; k++) {
+        any[k] = own[k] = 3e38f;
+    }
+    for (int i = first; i < first + 4; i++) {
         for (int k = 0; k < LEAF; k++) {
             float d = t->a2[i];
 
@@ -159,26 +163,30 @@ static inline void plain_nearest(const struct packed_leaf *p, const struct lanes
     }
 }
 
-static size_t plain_near_points(const struct packed_leaf *pack, const uint32_t *leaf,
-                                const uint32_t *chosen, size_t n, const struct lanes *t, int dim,
-                                uint32_t *out)
+static void plain_near_points(const struct packed_leaf *pack, const uint32_t *leaf,
+                              const uint32_t *chosen, size_t n, const struct lanes *t, int dim,
+                              uint32_t own_leaf, struct found *out)
 {
-    size_t found = 0;
-
     for (size_t q = 0; q < n; q++) {
         const struct packed_leaf *p = &pack[chosen[q]];
-        float any[LEAF], own[LEAF];
+        float any[2][LEAF], own[2][LEAF];
 
-        for (int k = 0; k < LEAF; k++) {
-            any[k] = own[k] = 3e38f;
-        }
-        plain_nearest(p, t, dim, any, own);
+        plain_nearest(p, t, dim, 0, any[0], own[0]);
+        plain_nearest(p, t, dim, 4, any[1], own[1]);
         for (unsigned k = 0; k < LEAF; k++) {
-            out[found] = leaf[chosen[q]] * LEAF + k;
-            found += (own[k] <= -p->s[k]) | (any[k] <= p->r2[k] - p->s[k]);
+            bool sees[2];
+
+            for (int half = 0; half < 2; half++) {
+                sees[half] = own[half][k] <= -p->s[k] || any[half][k] <= p->r2[k] - p->s[k];
+            }
+            if (sees[0] || sees[1]) {
+                bool one = sees[0] != sees[1] && leaf[chosen[q]] != own_leaf;
+                int by = !one ? BY_BOTH : sees[0] ? BY_LOWER : BY_UPPER;
+
+                out->source[by][out->n[by]++] = leaf[chosen[q]] * LEAF + k;
+            }
         }
     }
-    return found;
 }
 
 static void plain_steps(uint16_t *out, const uint32_t *found, size_t n, uint32_t base)
@@ -188,8 +196,17 @@ static void plain_steps(uint16_t *out, const uint32_t *found, size_t n, uint32_t
     }
 }
 
-static const struct filter plain = {plain_eight,       plain_near_boxes,  plain_pack, plain_lanes,
-                                    plain_near_leaves, plain_near_points, plain_steps};
+static void plain_turns(uint16_t *out, const uint32_t *lower, const uint32_t *upper, size_t n,
+                        uint32_t base)
+{
+    for (size_t k = 0; k < n; k++) {
+        out[2 * k] = (uint16_t)(lower[k] - base);
+        out[2 * k + 1] = (uint16_t)(upper[k] - base);
+    }
+}
+
+static const struct filter plain = {plain_eight,       plain_near_boxes,  plain_pack,  plain_lanes,
+                                    plain_near_leaves, plain_near_points, plain_steps, plain_turns};
 
 const struct filter *filter_plain(void)
 {

@@ -39,6 +39,13 @@ struct lanes {
     uint32_t uniform;          /* 1: the largest reach serves for all */
 };
 
+/* Sources of a group, by the lanes that see them. */
+enum { BY_BOTH, BY_LOWER, BY_UPPER, BY_SIDES };
+struct found {
+    uint32_t *source[BY_SIDES];
+    size_t n[BY_SIDES], capacity[BY_SIDES];
+};
+
 /* Points in columns, whose reach is scale * h; h may be NULL if scale is 0. */
 struct points {
     const double *const *x, *h;
@@ -64,16 +71,19 @@ struct filter {
      * the lanes, as numbers within the pack; their count. Room for n + 8. */
     size_t (*near_leaves)(const struct packed_box8 *boxes, size_t n, const struct lanes *t, int dim,
                           uint32_t *out);
-    /* Writes the index 8 leaf[k] + i of every source of those leaves that a lane sees; their
-     * count. Room for 8 n + STEPS_MORE. */
-    size_t (*near_points)(const struct packed_leaf *pack, const uint32_t *leaf,
-                          const uint32_t *chosen, size_t n, const struct lanes *t, int dim,
-                          uint32_t *out);
+    /* Appends to `out` the index 8 leaf[k] + i of every source of those leaves that a lane sees; of
+     * leaf `own` as if both halves of the lanes saw it. Room for 8 n + STEPS_MORE in each. */
+    void (*near_points)(const struct packed_leaf *pack, const uint32_t *leaf,
+                        const uint32_t *chosen, size_t n, const struct lanes *t, int dim,
+                        uint32_t own, struct found *out);
     /* Writes found[k] - base; room for STEPS_MORE beyond n, read and written. */
     void (*steps)(uint16_t *out, const uint32_t *found, size_t n, uint32_t base);
+    /* Likewise lower[0], upper[0], lower[1], ... */
+    void (*turns)(uint16_t *out, const uint32_t *lower, const uint32_t *upper, size_t n,
+                  uint32_t base);
 };
 
-#define STEPS_MORE 16
+#define STEPS_MORE 32
 #define UNIFORM 1.004f /* reaches of a group that differ less are taken as one */
 /* Points further away than so many units are taken to be there: squares must stay numbers. */
 #define FILTER_FAR 1e18
@@ -86,9 +96,9 @@ const struct filter *filter_avx2(void);
 const struct filter *filter_avx512(void);
 /* near_boxes and near_points for AVX-512; on x86-64 alone. */
 unsigned filter_near_boxes_avx512(const struct box8 *boxes, const struct query *q, int dim);
-size_t filter_near_points_avx512(const struct packed_leaf *pack, const uint32_t *leaf,
-                                 const uint32_t *chosen, size_t n, const struct lanes *t, int dim,
-                                 uint32_t *out);
+void filter_near_points_avx512(const struct packed_leaf *pack, const uint32_t *leaf,
+                               const uint32_t *chosen, size_t n, const struct lanes *t, int dim,
+                               uint32_t own, struct found *out);
 
 /* Eight values of a column from `first` on, those beyond `last` as the one before it. */
 static inline const double *filter_eight(const double *x, size_t first, size_t last, double *room)

@@ -325,6 +325,23 @@ AVX2 static size_t avx2_near_leaves(const struct packed_box8 *boxes, size_t n,
     return dim == 2 ? avx2_leaves(boxes, n, t, 2, out) : avx2_leaves(boxes, n, t, 1, out);
 }
 
+/* Bits of the points that the lower half of the lanes sees, and the upper. */
+struct seen {
+    unsigned by[2];
+};
+
+AVX2_INLINE void avx2_found(struct found *out, uint32_t base, bool own, struct seen s)
+{
+    if (own) {
+        s.by[0] = s.by[1] = s.by[0] | s.by[1];
+    }
+    out->n[BY_BOTH] += avx2_put(out->source[BY_BOTH] + out->n[BY_BOTH], base, s.by[0] & s.by[1]);
+    out->n[BY_LOWER] +=
+        avx2_put(out->source[BY_LOWER] + out->n[BY_LOWER], base, s.by[0] & ~s.by[1]);
+    out->n[BY_UPPER] +=
+        avx2_put(out->source[BY_UPPER] + out->n[BY_UPPER], base, s.by[1] & ~s.by[0]);
+}
+
 AVX2_INLINE unsigned avx2_verdict(const struct packed_leaf *p, const struct lanes *t, int uniform,
                                   __m256 any, __m256 own)
 {
@@ -340,14 +357,14 @@ AVX2_INLINE unsigned avx2_verdict(const struct packed_leaf *p, const struct lane
     return (unsigned)_mm256_movemask_ps(hit);
 }
 
-/* Two leaves at a time, for they share what is loaded of the lanes. */
+/* Two leaves at a time, for they share what is loaded of the lanes: half of them, from `first` on. */
 AVX2_INLINE void avx2_two(const struct packed_leaf *p, const struct packed_leaf *q,
-                          const struct lanes *t, int dim, int uniform, unsigned *mask)
+                          const struct lanes *t, int dim, int uniform, int first, unsigned *mask)
 {
     __m256 any0 = _mm256_set1_ps(3e38f), any1 = any0, own0 = any0, own1 = any0;
 
-#pragma GCC unroll 8
-    for (int i = 0; i < 8; i++) {
+#pragma GCC unroll 4
+    for (int i = first; i < first + 4; i++) {
         __m256 d0 = _mm256_broadcast_ss(&t->a2[i]), d1 = d0;
 
 #pragma GCC unroll 3
@@ -370,46 +387,46 @@ AVX2_INLINE void avx2_two(const struct packed_leaf *p, const struct packed_leaf 
     mask[1] = avx2_verdict(q, t, uniform, any1, own1);
 }
 
-AVX2_INLINE size_t avx2_points(const struct packed_leaf *pack, const uint32_t *leaf,
-                               const uint32_t *chosen, size_t n, const struct lanes *t, int dim,
-                               int uniform, uint32_t *out)
+AVX2_INLINE void avx2_points(const struct packed_leaf *pack, const uint32_t *leaf,
+                             const uint32_t *chosen, size_t n, const struct lanes *t, int dim,
+                             int uniform, uint32_t own, struct found *out)
 {
-    size_t found = 0;
-    unsigned mask[2];
+    unsigned low[2], high[2];
 
-    for (size_t q = 0; q + 1 < n; q += 2) {
-        uint32_t a = chosen[q], b = chosen[q + 1];
+    for (size_t q = 0; q < n; q += 2) {
+        uint32_t a = chosen[q], b = chosen[q + 1 < n ? q + 1 : q];
 
-        avx2_two(&pack[a], &pack[b], t, dim, uniform, mask);
-        found += avx2_put(out + found, leaf[a] * LEAF, mask[0]);
-        found += avx2_put(out + found, leaf[b] * LEAF, mask[1]);
+        avx2_two(&pack[a], &pack[b], t, dim, uniform, 0, low);
+        avx2_two(&pack[a], &pack[b], t, dim, uniform, 4, high);
+        avx2_found(out, leaf[a] * LEAF, leaf[a] == own, (struct seen){{low[0], high[0]}});
+        if (q + 1 < n) {
+            avx2_found(out, leaf[b] * LEAF, leaf[b] == own, (struct seen){{low[1], high[1]}});
+        }
     }
-    if (n % 2) {
-        uint32_t a = chosen[n - 1];
-
-        avx2_two(&pack[a], &pack[a], t, dim, uniform, mask);
-        found += avx2_put(out + found, leaf[a] * LEAF, mask[0]);
-    }
-    return found;
 }
 
-AVX2 static size_t avx2_near_points(const struct packed_leaf *pack, const uint32_t *leaf,
-                                    const uint32_t *chosen, size_t n, const struct lanes *t,
-                                    int dim, uint32_t *out)
+AVX2 static void avx2_near_points(const struct packed_leaf *pack, const uint32_t *leaf,
+                                  const uint32_t *chosen, size_t n, const struct lanes *t, int dim,
+                                  uint32_t own, struct found *out)
 {
     switch (2 * dim + (t->uniform != 0)) {
     case 2:
-        return avx2_points(pack, leaf, chosen, n, t, 1, 0, out);
+        avx2_points(pack, leaf, chosen, n, t, 1, 0, own, out);
+        break;
     case 3:
-        return avx2_points(pack, leaf, chosen, n, t, 1, 1, out);
+        avx2_points(pack, leaf, chosen, n, t, 1, 1, own, out);
+        break;
     case 4:
-        return avx2_points(pack, leaf, chosen, n, t, 2, 0, out);
+        avx2_points(pack, leaf, chosen, n, t, 2, 0, own, out);
+        break;
     case 5:
-        return avx2_points(pack, leaf, chosen, n, t, 2, 1, out);
+        avx2_points(pack, leaf, chosen, n, t, 2, 1, own, out);
+        break;
     case 6:
-        return avx2_points(pack, leaf, chosen, n, t, 3, 0, out);
+        avx2_points(pack, leaf, chosen, n, t, 3, 0, own, out);
+        break;
     default:
-        return avx2_points(pack, leaf, chosen, n, t, 3, 1, out);
+        avx2_points(pack, leaf, chosen, n, t, 3, 1, own, out);
     }
 }
 
@@ -427,12 +444,27 @@ AVX2 static void avx2_steps(uint16_t *out, const uint32_t *found, size_t n, uint
     }
 }
 
-static const struct filter avx2 = {avx2_eight,       avx2_near_boxes,  avx2_pack, avx2_lanes,
-                                   avx2_near_leaves, avx2_near_points, avx2_steps};
+AVX2 static void avx2_turns(uint16_t *out, const uint32_t *lower, const uint32_t *upper, size_t n,
+                            uint32_t base)
+{
+    __m256i b = _mm256_set1_epi32((int)base);
+
+    for (size_t k = 0; k < n; k += 8) {
+        __m256i low = _mm256_loadu_si256((const __m256i *)(const void *)(lower + k));
+        __m256i high = _mm256_loadu_si256((const __m256i *)(const void *)(upper + k));
+
+        high = _mm256_slli_epi32(_mm256_sub_epi32(high, b), 16);
+        low = _mm256_blend_epi16(high, _mm256_sub_epi32(low, b), 0x55);
+        _mm256_storeu_si256((__m256i *)(void *)(out + 2 * k), low);
+    }
+}
+
+static const struct filter avx2 = {avx2_eight,       avx2_near_boxes,  avx2_pack,  avx2_lanes,
+                                   avx2_near_leaves, avx2_near_points, avx2_steps, avx2_turns};
 
 static const struct filter avx512 = {
-    avx2_eight,       filter_near_boxes_avx512,  avx2_pack, avx2_lanes,
-    avx2_near_leaves, filter_near_points_avx512, avx2_steps};
+    avx2_eight,       filter_near_boxes_avx512,  avx2_pack,  avx2_lanes,
+    avx2_near_leaves, filter_near_points_avx512, avx2_steps, avx2_turns};
 
 const struct filter *filter_avx512(void)
 {

@@ -40,78 +40,107 @@ AVX512_INLINE __m512 both(const float *p, const float *q)
     return _mm512_insertf32x8(_mm512_castps256_ps512(_mm256_load_ps(p)), _mm256_load_ps(q), 1);
 }
 
-/* Bit k: a lane sees point k of p; bit 8 + k: of q. */
-AVX512_INLINE __mmask16 near_two(const struct packed_leaf *p, const struct packed_leaf *q,
-                                 const struct lanes *t, int dim, int uniform)
-{
-    __m512 any = _mm512_set1_ps(3e38f), own = any, x[3], s = both(p->s, q->s), r2;
+/* Half of the lanes: what is nearest of them to each point, and what reaches furthest beyond it. */
+struct nearest {
+    __m512 any, own;
+};
 
-#pragma GCC unroll 3
-    for (int a = 0; a < dim; a++) {
-        x[a] = both(p->x[a], q->x[a]);
-    }
-#pragma GCC unroll 8
-    for (int i = 0; i < LEAF; i++) {
+AVX512_INLINE struct nearest nearest_of(const __m512 *x, const struct lanes *t, int first, int dim,
+                                        int uniform)
+{
+    struct nearest out = {_mm512_set1_ps(3e38f), _mm512_set1_ps(3e38f)};
+
+#pragma GCC unroll 4
+    for (int i = first; i < first + 4; i++) {
         __m512 d = _mm512_set1_ps(t->a2[i]);
 
 #pragma GCC unroll 3
         for (int a = 0; a < dim; a++) {
             d = _mm512_fmadd_ps(_mm512_set1_ps(t->m2a[a][i]), x[a], d);
         }
-        any = _mm512_min_ps(d, any);
+        out.any = _mm512_min_ps(d, out.any);
         if (!uniform) {
-            own = _mm512_min_ps(_mm512_sub_ps(d, _mm512_set1_ps(t->r2[i])), own);
+            out.own = _mm512_min_ps(_mm512_sub_ps(d, _mm512_set1_ps(t->r2[i])), out.own);
         }
     }
-    r2 = both(p->r2, q->r2);
-    if (uniform) {
-        r2 = _mm512_max_ps(r2, _mm512_set1_ps(t->reach * t->reach));
-        return _mm512_cmp_ps_mask(any, _mm512_sub_ps(r2, s), _CMP_LE_OQ);
-    }
-    return _mm512_cmp_ps_mask(any, _mm512_sub_ps(r2, s), _CMP_LE_OQ) |
-           _mm512_cmp_ps_mask(own, _mm512_sub_ps(_mm512_setzero_ps(), s), _CMP_LE_OQ);
+    return out;
 }
 
-AVX512_INLINE size_t near_points(const struct packed_leaf *pack, const uint32_t *leaf,
-                                 const uint32_t *chosen, size_t n, const struct lanes *t, int dim,
-                                 int uniform, uint32_t *out)
+/* most: what `any` may be at most, r2 - s; least: what `own` may be, -s. */
+AVX512_INLINE unsigned sees(struct nearest n, __m512 most, __m512 least, int uniform)
+{
+    unsigned mask = _mm512_cmp_ps_mask(n.any, most, _CMP_LE_OQ);
+
+    return uniform ? mask : mask | _mm512_cmp_ps_mask(n.own, least, _CMP_LE_OQ);
+}
+
+AVX512_INLINE void append(struct found *out, int by, __m512i index, unsigned mask)
+{
+    _mm512_storeu_si512(out->source[by] + out->n[by],
+                        _mm512_maskz_compress_epi32((__mmask16)mask, index));
+    out->n[by] += (size_t)__builtin_popcount(mask);
+}
+
+AVX512_INLINE void near_points(const struct packed_leaf *pack, const uint32_t *leaf,
+                               const uint32_t *chosen, size_t n, const struct lanes *t, int dim,
+                               int uniform, uint32_t own, struct found *out)
 {
     const __m512i iota = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7);
-    size_t found = 0;
 
     for (size_t k = 0; k < n; k += 2) {
         uint32_t a = chosen[k], b = chosen[k + 1 < n ? k + 1 : k];
-        unsigned mask = near_two(&pack[a], &pack[b], t, dim, uniform);
-        __m512i first = _mm512_castsi256_si512(_mm256_set1_epi32((int)(leaf[a] * LEAF)));
+        const struct packed_leaf *p = &pack[a], *q = &pack[b];
+        unsigned all = k + 1 < n ? 0xffff : 0xff, low, high; /* is there a second one? */
+        __m512 x[3], s = both(p->s, q->s), r2 = both(p->r2, q->r2);
+        __m512 least = _mm512_sub_ps(_mm512_setzero_ps(), s);
+        __m512i index = _mm512_castsi256_si512(_mm256_set1_epi32((int)(leaf[a] * LEAF)));
 
-        if (k + 1 == n) {
-            mask &= 0xff; /* there is no second one */
+        index = _mm512_inserti32x8(index, _mm256_set1_epi32((int)(leaf[b] * LEAF)), 1);
+        index = _mm512_add_epi32(index, iota);
+        if (uniform) {
+            r2 = _mm512_max_ps(r2, _mm512_set1_ps(t->reach * t->reach));
         }
-        first = _mm512_inserti32x8(first, _mm256_set1_epi32((int)(leaf[b] * LEAF)), 1);
-        first = _mm512_maskz_compress_epi32((__mmask16)mask, _mm512_add_epi32(first, iota));
-        _mm512_storeu_si512(out + found, first);
-        found += (size_t)__builtin_popcount(mask);
+        r2 = _mm512_sub_ps(r2, s);
+#pragma GCC unroll 3
+        for (int c = 0; c < dim; c++) {
+            x[c] = both(p->x[c], q->x[c]);
+        }
+        low = all & sees(nearest_of(x, t, 0, dim, uniform), r2, least, uniform);
+        high = all & sees(nearest_of(x, t, 4, dim, uniform), r2, least, uniform);
+        if (leaf[a] == own || leaf[b] == own) {
+            unsigned ours = leaf[a] == own ? 0xff : 0xff00, seen = (low | high) & ours;
+
+            low |= seen;
+            high |= seen;
+        }
+        append(out, BY_BOTH, index, low & high);
+        append(out, BY_LOWER, index, low & ~high);
+        append(out, BY_UPPER, index, high & ~low);
     }
-    return found;
 }
 
-AVX512 size_t filter_near_points_avx512(const struct packed_leaf *pack, const uint32_t *leaf,
-                                        const uint32_t *chosen, size_t n, const struct lanes *t,
-                                        int dim, uint32_t *out)
+AVX512 void filter_near_points_avx512(const struct packed_leaf *pack, const uint32_t *leaf,
+                                      const uint32_t *chosen, size_t n, const struct lanes *t,
+                                      int dim, uint32_t own, struct found *out)
 {
     switch (2 * dim + (t->uniform != 0)) {
     case 2:
-        return near_points(pack, leaf, chosen, n, t, 1, 0, out);
+        near_points(pack, leaf, chosen, n, t, 1, 0, own, out);
+        break;
     case 3:
-        return near_points(pack, leaf, chosen, n, t, 1, 1, out);
+        near_points(pack, leaf, chosen, n, t, 1, 1, own, out);
+        break;
     case 4:
-        return near_points(pack, leaf, chosen, n, t, 2, 0, out);
+        near_points(pack, leaf, chosen, n, t, 2, 0, own, out);
+        break;
     case 5:
-        return near_points(pack, leaf, chosen, n, t, 2, 1, out);
+        near_points(pack, leaf, chosen, n, t, 2, 1, own, out);
+        break;
     case 6:
-        return near_points(pack, leaf, chosen, n, t, 3, 0, out);
+        near_points(pack, leaf, chosen, n, t, 3, 0, own, out);
+        break;
     default:
-        return near_points(pack, leaf, chosen, n, t, 3, 1, out);
+        near_points(pack, leaf, chosen, n, t, 3, 1, own, out);
     }
 }
 #endif

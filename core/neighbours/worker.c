@@ -4,7 +4,7 @@
  * Groups that stand side by side share one search and one copy of the leaves found, in single
  * precision relative to their common centre (a bundle). Each group then takes from that first the
  * leaves, then the points that it sees. A group whose lanes are far apart is taken in pieces.
- * Leaves come ascending, so lists do; only those of pieces, and sources that stand in an order of
+ * Leaves come ascending, so sources do; only those of pieces, and sources that stand in an order of
  * the search's own, are sorted. */
 #include "neighbours/worker.h"
 
@@ -14,6 +14,8 @@
 
 #define BUNDLE_MOST 12    /* groups in a bundle */
 #define BUNDLE_SPREAD 2.0 /* half the diagonal of a bundle's box, in units of its smallest reach */
+
+#define NO_LEAF UINT32_MAX
 
 /* Destinations [first, last) that are looked after together. */
 struct stretch {
@@ -73,7 +75,9 @@ void worker_fini(struct worker *w)
 {
     free(w->span);
     free(w->step);
-    free(w->found);
+    for (int by = 0; by < BY_SIDES; by++) {
+        free(w->found.source[by]);
+    }
     free(w->leaf);
     free(w->chosen);
     free(w->pack);
@@ -84,23 +88,76 @@ void worker_fini(struct worker *w)
 
 size_t worker_bytes(const struct worker *w)
 {
+    size_t found = w->found.capacity[0] + w->found.capacity[1] + w->found.capacity[2];
+
     return w->span_capacity * sizeof *w->span + w->step_capacity * sizeof *w->step +
-           w->found_capacity * sizeof *w->found + bitset_bytes(&w->near) +
-           bitset_bytes(&w->unsorted) +
+           found * sizeof(uint32_t) + bitset_bytes(&w->near) + bitset_bytes(&w->unsorted) +
            w->leaf_capacity * (2 * sizeof *w->leaf + sizeof *w->pack + sizeof *w->box / LEAF);
 }
 
-/* Sorts what was found, ascending and without repeats. */
-static void sort_found(const struct job *j, struct worker *w)
+/* -- What is found of a group ------------------------------------------------------------------ */
+
+static bool found_reserve(struct worker *w, int by, size_t n)
 {
-    if (!w->unsorted.bits && !bitset_init(&w->unsorted, j->src->n)) {
-        w->no_memory = true;
-        return;
+    return reserve(w, &w->found.source[by], &w->found.capacity[by], n + STEPS_MORE,
+                   sizeof **w->found.source);
+}
+
+static void unsorted_add(struct worker *w, int by)
+{
+    for (size_t k = 0; k < w->found.n[by]; k++) {
+        bitset_add(&w->unsorted, w->found.source[by][k]);
     }
-    for (size_t k = 0; k < w->n_found; k++) {
-        bitset_add(&w->unsorted, w->found[k]);
+}
+
+static bool unsorted_begin(const struct job *j, struct worker *w)
+{
+    w->no_memory = w->no_memory || (!w->unsorted.bits && !bitset_init(&w->unsorted, j->src->n));
+    return !w->no_memory;
+}
+
+/* Sources of the group's own places are for both halves: moves them there. There is room, for they are
+ * fewer than STEPS_MORE. */
+static void found_own(struct found *f, size_t group)
+{
+    for (int by = BY_LOWER; by <= BY_UPPER; by++) {
+        size_t kept = 0;
+
+        for (size_t k = 0; k < f->n[by]; k++) {
+            uint32_t source = f->source[by][k];
+
+            if (source / LANES == group) {
+                f->source[BY_BOTH][f->n[BY_BOTH]++] = source;
+            } else {
+                f->source[by][kept++] = source;
+            }
+        }
+        f->n[by] = kept;
     }
-    w->n_found = bitset_take(&w->unsorted, w->found);
+}
+
+/* Sorts what was found, ascending. */
+static void found_sort(const struct job *j, struct worker *w, size_t group)
+{
+    found_own(&w->found, group);
+    for (int by = 0; by < BY_SIDES && unsorted_begin(j, w); by++) {
+        unsorted_add(w, by);
+        w->found.n[by] = bitset_take(&w->unsorted, w->found.source[by]);
+    }
+}
+
+/* Likewise and without repeats, for lanes of pieces are no halves of a group: as seen by both. */
+static void found_sort_as_one(const struct job *j, struct worker *w)
+{
+    size_t *n = w->found.n;
+
+    if (unsorted_begin(j, w) && found_reserve(w, BY_BOTH, n[0] + n[1] + n[2])) {
+        for (int by = 0; by < BY_SIDES; by++) {
+            unsorted_add(w, by);
+            n[by] = 0;
+        }
+        n[BY_BOTH] = bitset_take(&w->unsorted, w->found.source[BY_BOTH]);
+    }
 }
 
 /* -- Stretches
@@ -217,59 +274,115 @@ static void look(const struct job *j, struct worker *w, const struct stretch *s,
     }
 }
 
-/* Appends the sources that destinations [first, last), at most a group, see of the packed
- * leaves. */
+/* Appends the sources that destinations [first, last), at most a group, see of the packed leaves. The
+ * group's own places are leaf `own`: where both are one array, sources that are in it for all lanes. */
 static void take(const struct job *j, struct worker *w, const struct frame *f, size_t first,
-                 size_t last)
+                 size_t last, uint32_t own)
 {
+    struct found *found = &w->found;
+    size_t n, before[BY_SIDES];
     struct lanes t;
-    size_t n, found;
 
     if (w->n_leaf == 0) {
         return;
     }
     j->filter->lanes(&t, j->dst, j->scale, f, first, last);
     n = j->filter->near_leaves(w->box, w->n_leaf, &t, j->src->dim, w->chosen);
-    if (!reserve(w, &w->found, &w->found_capacity, w->n_found + LEAF * n + STEPS_MORE,
-                 sizeof *w->found)) {
-        return;
+    for (int by = 0; by < BY_SIDES; by++) {
+        before[by] = found->n[by];
+        if (!found_reserve(w, by, before[by] + LEAF * n)) {
+            return;
+        }
     }
-    found = j->filter->near_points(w->pack, w->leaf, w->chosen, n, &t, j->src->dim,
-                                   w->found + w->n_found);
-    for (size_t k = w->n_found; j->src->order && k < w->n_found + found; k++) {
-        w->found[k] = j->src->order[w->found[k]];
+    j->filter->near_points(w->pack, w->leaf, w->chosen, n, &t, j->src->dim,
+                           j->src->order ? NO_LEAF : own, found);
+    for (int by = 0; j->src->order && by < BY_SIDES; by++) {
+        for (size_t k = before[by]; k < found->n[by]; k++) {
+            found->source[by][k] = j->src->order[found->source[by][k]];
+        }
     }
-    w->n_found += found;
     w->candidates += n * LEAF * LANES;
+}
+
+/* Whose turn it is to be put: from `at` on, those of a group that are not yet in its lists. */
+struct rest {
+    size_t at[BY_SIDES], end[BY_SIDES];
+};
+
+/* The lowest of what is left; false if that is nothing. */
+static bool rest_base(const struct found *f, struct rest *r, uint32_t *base)
+{
+    bool some = false;
+
+    for (int by = 0; by < BY_SIDES; by++) {
+        if (r->at[by] < f->n[by]) {
+            uint32_t first = f->source[by][r->at[by]];
+
+            *base = some && *base < first ? *base : first;
+            some = true;
+        }
+    }
+    return some;
+}
+
+/* Sets the ends of what fits into one span. */
+static void rest_cut(const struct found *f, struct rest *r, uint32_t base)
+{
+    for (int by = 0; by < BY_SIDES; by++) {
+        size_t end = f->n[by];
+
+        while (end > r->at[by] && f->source[by][end - 1] - base >= UINT16_MAX) {
+            end--;
+        }
+        r->end[by] = end;
+    }
+}
+
+/* A span: what both halves of the lanes see, what is left over of one of them, their turns. */
+static void put_span(const struct job *j, struct worker *w, const struct rest *r, uint32_t base)
+{
+    const struct found *f = &w->found;
+    const uint32_t *side[BY_SIDES];
+    size_t n[BY_SIDES], turns, more;
+    uint16_t *out = w->step + w->n_step;
+    int longer;
+
+    for (int by = 0; by < BY_SIDES; by++) {
+        side[by] = f->source[by] + r->at[by];
+        n[by] = r->end[by] - r->at[by];
+    }
+    longer = n[BY_LOWER] > n[BY_UPPER] ? BY_LOWER : BY_UPPER;
+    turns = n[BY_LOWER] + n[BY_UPPER] - n[longer];
+    more = n[longer] - turns;
+    j->filter->steps(out, side[BY_BOTH], n[BY_BOTH], base);
+    j->filter->steps(out + n[BY_BOTH], side[longer] + turns, more, base);
+    j->filter->turns(out + n[BY_BOTH] + more, side[BY_LOWER], side[BY_UPPER], turns, base);
+    w->span[w->n_span++] = (sph_span){w->n_step, base, (uint16_t)(n[BY_BOTH] + more + 2 * turns),
+                                      (uint16_t)(n[BY_BOTH] + more)};
+    w->n_step += n[BY_BOTH] + more + 2 * turns;
 }
 
 /* Appends the sources found, which ascend, to the lists: those of a group. */
 static void put(const struct job *j, struct worker *w, size_t group)
 {
-    const uint32_t *found = w->found;
-    size_t n = w->n_found, spans = 0;
+    struct found *f = &w->found;
+    size_t n = f->n[BY_BOTH] + f->n[BY_LOWER] + f->n[BY_UPPER], spans = 0;
+    struct rest r = {.at = {0}};
+    uint32_t base;
 
-    w->n_found = 0;
-    if (w->no_memory ||
-        !reserve(w, &w->step, &w->step_capacity, w->n_step + n + STEPS_MORE, sizeof *w->step)) {
-        return;
-    }
-    for (size_t k = 0, end; k < n; k = end, spans++) {
-        uint32_t base = found[k];
-
-        end = n;
-        if (found[n - 1] - base > UINT16_MAX) {
-            for (end = k + 1; found[end] - base <= UINT16_MAX; end++) {
+    if (!w->no_memory &&
+        reserve(w, &w->step, &w->step_capacity, w->n_step + n + STEPS_MORE, sizeof *w->step)) {
+        for (; rest_base(f, &r, &base); spans++) {
+            if (!reserve(w, &w->span, &w->span_capacity, w->n_span + 1, sizeof *w->span)) {
+                break;
             }
+            rest_cut(f, &r, base);
+            put_span(j, w, &r, base);
+            memcpy(r.at, r.end, sizeof r.at);
         }
-        if (!reserve(w, &w->span, &w->span_capacity, w->n_span + 1, sizeof *w->span)) {
-            return;
-        }
-        w->span[w->n_span++] = (sph_span){w->n_step, base, (uint32_t)(end - k)};
-        j->filter->steps(w->step + w->n_step, found + k, end - k, base);
-        w->n_step += end - k;
+        j->count[group] = spans;
     }
-    j->count[group] = spans;
+    memset(f->n, 0, sizeof f->n);
 }
 
 /* -- Groups ------------------------------------------------------------------------------------ */
@@ -316,10 +429,10 @@ static void group_in_pieces(const struct job *j, struct worker *w, size_t group)
             piece = both;
         }
         look(j, w, &piece, &f);
-        take(j, w, &f, piece.first, piece.last);
+        take(j, w, &f, piece.first, piece.last, NO_LEAF);
         first = piece.last;
     }
-    sort_found(j, w);
+    found_sort_as_one(j, w);
     put(j, w, group);
 }
 
@@ -333,9 +446,9 @@ static void bundle(const struct job *j, struct worker *w, const struct stretch *
     for (size_t group = first; group < last; group++) {
         size_t begin = group * LANES, end = begin + LANES;
 
-        take(j, w, &f, begin, end < j->dst->n ? end : j->dst->n);
+        take(j, w, &f, begin, end < j->dst->n ? end : j->dst->n, (uint32_t)group);
         if (j->src->order) {
-            sort_found(j, w);
+            found_sort(j, w, group);
         }
         put(j, w, group);
     }

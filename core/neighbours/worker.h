@@ -23,8 +23,7 @@ struct worker {
     sph_span *span; /* lists of its chunks, one after the other */
     uint16_t *step;
     size_t n_span, span_capacity, n_step, step_capacity;
-    uint32_t *found; /* sources of the group at hand */
-    size_t n_found, found_capacity;
+    struct found found;      /* sources of the group at hand */
     uint32_t *leaf, *chosen; /* of the bundle at hand; of the group */
     struct packed_leaf *pack;
     struct packed_box8 *box;

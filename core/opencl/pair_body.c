@@ -314,7 +314,7 @@ static int give_lists(struct call *c, const struct part *part, struct error *e)
     const sph_batch *b = c->b;
 
     _Static_assert(sizeof(sph_span) == 16 && offsetof(sph_span, base) == 8 &&
-                       offsetof(sph_span, count) == 12,
+                       offsetof(sph_span, count) == 12 && offsetof(sph_span, common) == 14,
                    "sph_span in pair_source.c is another");
     if (give_data(c, part->begin, (part->groups + 1) * sizeof(*part->begin), e) ||
         give_data(c, b->span + part->begin[0], part->spans * sizeof(*b->span), e))

@@ -28,7 +28,7 @@ static const char *const words[] = {
     "typedef T R;",
     "typedef int B;",
     "typedef struct { double time, dt; ulong step; uint dim; } sph_batch;",
-    "typedef struct { ulong first; uint base, count; } sph_span;",
+    "typedef struct { ulong first; uint base; ushort count, common; } sph_span;",
     "",
     "#define sph_num(a) ((R)(a))",
     "static R sph_select(B m, R a, R b) { return m & 1 ? a : b; }",
@@ -147,10 +147,12 @@ static const char *const kernel_words[] = {
 static const char *const pair_words[] = {
     "    for (ulong sph_s = sph_begin[sph_g] - sph_base; sph_s < sph_begin[sph_g + 1] - sph_base;",
     "         sph_s++)",
-    "    for (uint sph_k = 0; sph_k < sph_spans[sph_s].count; sph_k++) {",
+    "    for (uint sph_k = 0; 2 * sph_k < sph_spans[sph_s].count + sph_spans[sph_s].common; sph_k++) {",
     "        const sph_span sph_some = sph_spans[sph_s];",
+    "        const uint sph_at = sph_k < sph_some.common ? sph_k",
+    "                                                    : 2 * sph_k - sph_some.common + sph_half;",
     "        const ulong sph_j =",
-    "            (ulong)sph_some.base + sph_list[sph_some.first - sph_least + sph_k];",
+    "            (ulong)sph_some.base + sph_list[sph_some.first - sph_least + sph_at];",
     "        R dx[DIM];",
     "        R r2 = 0.0;",
     "        for (int sph_c = 0; sph_c < DIM; sph_c++) {",
@@ -346,6 +348,7 @@ static void put_kernel(FILE *out, const sph_device_body *d, const struct pair_co
           "    if (sph_i >= sph_count)\n"
           "        return;\n"
           "    const ulong sph_g = sph_i / SPH_LANES;\n"
+          "    const uint sph_half = sph_i % SPH_LANES >= SPH_LANES / 2;\n"
           "    const sph_batch sph_now = {sph_time, sph_dt, sph_step, DIM};\n"
           "    const sph_batch *const b = &sph_now;\n"
           "    R sph_x_i[DIM];\n"

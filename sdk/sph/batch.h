@@ -61,11 +61,16 @@ typedef struct sph_kernel_form {
     uint32_t n_table, reserved2;
 } sph_kernel_form;
 
-/* Some sources of a group, in ascending order: base + list[first + k], 0 <= k < count. */
+/* Some sources of a group, in no promised order: base + list[first + k], 0 <= k < count. Only the
+ * first `common` are for all lanes; the destinations themselves are among them. The others, an even
+ * number, take turns: at common, common + 2, ... those that none but the lower half of the lanes can
+ * be near, after each one that none but the upper half can be near; two of them are one step of a
+ * vector (pair-group.h). Who does not care goes through all alike. */
 typedef struct sph_span {
     uint64_t first; /* into the batch's list */
     uint32_t base;  /* a source's index */
-    uint32_t count; /* at least 1 */
+    uint16_t count; /* at least 1 */
+    uint16_t common;
 } sph_span;
 
 typedef struct sph_run sph_run; /* opaque: the run that a batch is part of */

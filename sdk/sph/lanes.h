@@ -99,6 +99,25 @@ SPH_INLINE R SPH_OF_ISA(sph_load_)(const T *p)
     return *(const R *)(const void *)p;
 }
 
+#if SPH_WIDTH == 8
+/* *a in the lower half of the lanes, *b in the upper. */
+SPH_INLINE R SPH_OF_ISA(sph_halves_)(const T *a, const T *b)
+{
+#if defined(SPH_AVX512_WORDS) && SPH_F32_WORDS
+    return (R)_mm256_mask_broadcastss_ps(_mm256_broadcast_ss(a), 0xf0, _mm_load_ss(b));
+#elif defined(SPH_AVX512_WORDS)
+    return (R)_mm512_mask_broadcastsd_pd(_mm512_set1_pd(*a), 0xf0, _mm_load_sd(b));
+#else
+    return (R)_mm256_blend_ps(_mm256_broadcast_ss(a), _mm256_broadcast_ss(b), 0xf0);
+#endif
+}
+
+SPH_INLINE B SPH_OF_ISA(sph_whole_halves_)(const INT *a, const INT *b)
+{
+    return (B)SPH_OF_ISA(sph_halves_)((const T *)(const void *)a, (const T *)(const void *)b);
+}
+#endif
+
 #ifdef SPH_FORM_LIST
 /* p[k[0]], p[k[1]]: what the loop over lists has in its lanes. */
 SPH_INLINE R SPH_OF_ISA(sph_gather_)(const T *p, const uint32_t *k)
@@ -152,14 +171,19 @@ SPH_INLINE R SPH_OF_ISA(sph_min_)(R a, R b)
 }
 #endif
 
-/* Which lanes take part in a pair, in the form that is cheapest to use: M. Sums are chosen after the
- * addition, so that it and the product before it become one instruction. */
+/* Which lanes take part in a pair, in the form that is cheapest to use: M; without the self pair, or
+ * where there can be none (near). Sums are chosen after the addition, so that it and the product
+ * before it become one instruction. */
 #ifdef SPH_AVX512_WORDS
 typedef unsigned char M;
 #if SPH_F32_WORDS
+SPH_INLINE M SPH_OF_ISA(sph_near_)(R r2, R reach2)
+{
+    return _mm256_cmp_ps_mask((__m256)r2, (__m256)reach2, _CMP_LT_OQ);
+}
 SPH_INLINE M SPH_OF_ISA(sph_within_)(R r2, R reach2, B number, B j)
 {
-    return (M)(_mm256_cmp_ps_mask((__m256)r2, (__m256)reach2, _CMP_LT_OQ) &
+    return (M)(SPH_OF_ISA(sph_near_)(r2, reach2) &
                ~_mm256_cmpeq_epi32_mask((__m256i)number, (__m256i)j));
 }
 SPH_INLINE B SPH_OF_ISA(sph_mask_of_)(M m)
@@ -171,9 +195,13 @@ SPH_INLINE R SPH_OF_ISA(sph_where_)(M m, R a, R b)
     return (R)_mm256_mask_blend_ps(m, (__m256)b, (__m256)a);
 }
 #else
+SPH_INLINE M SPH_OF_ISA(sph_near_)(R r2, R reach2)
+{
+    return _mm512_cmp_pd_mask((__m512d)r2, (__m512d)reach2, _CMP_LT_OQ);
+}
 SPH_INLINE M SPH_OF_ISA(sph_within_)(R r2, R reach2, B number, B j)
 {
-    return (M)(_mm512_cmp_pd_mask((__m512d)r2, (__m512d)reach2, _CMP_LT_OQ) &
+    return (M)(SPH_OF_ISA(sph_near_)(r2, reach2) &
                ~_mm512_cmpeq_epi64_mask((__m512i)number, (__m512i)j));
 }
 SPH_INLINE B SPH_OF_ISA(sph_mask_of_)(M m)
@@ -187,9 +215,13 @@ SPH_INLINE R SPH_OF_ISA(sph_where_)(M m, R a, R b)
 #endif
 #else
 typedef B M;
+SPH_INLINE M SPH_OF_ISA(sph_near_)(R r2, R reach2)
+{
+    return (B)(r2 < reach2);
+}
 SPH_INLINE M SPH_OF_ISA(sph_within_)(R r2, R reach2, B number, B j)
 {
-    return (B)(r2 < reach2) & ~(B)(number == j);
+    return SPH_OF_ISA(sph_near_)(r2, reach2) & ~(B)(number == j);
 }
 SPH_INLINE B SPH_OF_ISA(sph_mask_of_)(M m)
 {

@@ -12,6 +12,8 @@
     const SPH_HELD *name##_s[n];                                                                   \
     for (int sph_c = 0; sph_c < n; sph_c++)                                                        \
         name##_s[sph_c] = SPH_P(b->src[k], sph_c);
+/* Where in a span the k-th source is that half of a group has to meet (0 the lower, 1 the upper). */
+#define SPH_AT_HALF(k, common, half) ((k) < (common) ? (k) : 2u * (k) - (common) + (half))
 /* Accumulators at their start. */
 #define SPH_A_S(name, k) R name = sph_num(0.0);
 #define SPH_A_V(name, k) SPH_A_N(name, DIM)
@@ -38,6 +40,7 @@
 #undef SPH_S_V
 #undef SPH_S_M
 #undef SPH_S_N
+#undef SPH_AT_HALF
 #undef SPH_A_S
 #undef SPH_A_V
 #undef SPH_A_M

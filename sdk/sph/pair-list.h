@@ -69,15 +69,18 @@ static sph_status SPH_LOOP_NAME(const sph_batch *b)
         SPH_LOOP_MIN(SPH_A_MIN)
         SPH_LOOP_MAX(SPH_A_MAX)
 
-        for (uint64_t sph_s = b->begin[sph_g]; sph_s < b->begin[sph_g + 1]; sph_s++)
-            for (uint32_t sph_k = 0; sph_k < b->span[sph_s].count; sph_k += SPH_NEAR) {
-                const uint32_t sph_left = b->span[sph_s].count - sph_k,
-                               sph_n = sph_left < SPH_NEAR ? sph_left : SPH_NEAR;
-                const uint16_t *const sph_steps = b->list + b->span[sph_s].first + sph_k;
+        const uint32_t sph_half = i % SPH_LANES >= SPH_LANES / 2u;
+        for (uint64_t sph_s = b->begin[sph_g]; sph_s < b->begin[sph_g + 1]; sph_s++) {
+            const uint32_t sph_base = b->span[sph_s].base, sph_common = b->span[sph_s].common,
+                           sph_all = sph_common + (b->span[sph_s].count - sph_common) / 2u;
+            const uint16_t *const sph_steps = b->list + b->span[sph_s].first;
+            for (uint32_t sph_k = 0; sph_k < sph_all; sph_k += SPH_NEAR) {
+                const uint32_t sph_end = sph_all - sph_k < SPH_NEAR ? sph_all : sph_k + SPH_NEAR;
                 uint32_t sph_near[SPH_NEAR + SPH_WIDTH];
                 int sph_found = 0;
-                for (uint32_t sph_q = 0; sph_q < sph_n; sph_q++) {
-                    const uint32_t j = b->span[sph_s].base + sph_steps[sph_q];
+                for (uint32_t sph_q = sph_k; sph_q < sph_end; sph_q++) {
+                    const uint32_t j =
+                        sph_base + sph_steps[SPH_AT_HALF(sph_q, sph_common, sph_half)];
                     T d2 = 0, reach2 = reach2_i;
                     for (int c = 0; c < DIM; c++) {
                         const T d = x_d[c][i] - x_s[c][j];
@@ -112,6 +115,7 @@ static sph_status SPH_LOOP_NAME(const sph_batch *b)
 #include <sph/pair-bodies.h>
                 }
             }
+        }
         SPH_LOOP_SUM(SPH_O_S, SPH_O_V, SPH_O_M)
         SPH_LOOP_MIN(SPH_O_MIN)
         SPH_LOOP_MAX(SPH_O_MAX)

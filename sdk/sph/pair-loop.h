@@ -1,7 +1,8 @@
 /* sph/pair-loop.h -- expands a plugin's pair body into the loops of a sweep: for one, two and three
  * dimensions, for each instruction set and precision, and without vectors at all (SPH_PATH_... in
  * batch.h): over the destinations of a group, the sources broadcast (pair-group.h), or where vectors
- * are short over the sources of one destination (pair-list.h). Define, then include this (as often as there are sweeps in a file):
+ * are short over the sources of one destination (pair-list.h). Define, then include this (as often as
+ * there are sweeps in a file):
  *
  *   #define SPH_LOOP my_sweep                 name of the sph_range_fn that is made (static)
  *   #define SPH_LOOP_I(S, V, M) S(rho, 2)     destination values: rho_i from declared property 2;

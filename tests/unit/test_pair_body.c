@@ -130,8 +130,8 @@ static void make_lists(void)
     for (uint64_t g = 0; g < GROUPS; g++) {
         const uint64_t at = (GROUPS - 1 - g) * SOURCES;
         cloud.begin[g] = 2 * g;
-        cloud.span[2 * g] = (sph_span){at, 0, CUT};
-        cloud.span[2 * g + 1] = (sph_span){at + CUT, CUT, SOURCES - CUT};
+        cloud.span[2 * g] = (sph_span){at, 0, CUT, CUT};
+        cloud.span[2 * g + 1] = (sph_span){at + CUT, CUT, SOURCES - CUT, SOURCES - CUT};
         for (uint64_t k = 0; k < SOURCES; k++)
             cloud.list[at + k] = (uint16_t)(k < CUT ? k : k - CUT);
     }

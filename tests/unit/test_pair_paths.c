@@ -175,42 +175,84 @@ static void make_particles(struct cloud *p)
     }
 }
 
-static bool is_near(const struct cloud *p, uint64_t g, uint32_t j)
+/* Bit 0: source j is near one of the lower lanes of group g; bit 1: of the upper. */
+static unsigned is_near(const struct cloud *p, uint64_t g, uint32_t j)
 {
-    const double *h = p->h[DOUBLES].data;
-    bool near = false;
+    const double *h = p->h[0].data;
+    unsigned near = 0;
 
     for (uint64_t i = g * SPH_LANES; i < N && i < (g + 1) * SPH_LANES; i++) {
         double r2 = 0;
         for (int c = 0; c < p->setup->dim; c++)
             r2 += pow(x_of(p, (size_t)c, i) - x_of(p, (size_t)c, j), 2);
-        near = near || sqrt(r2) < 2.01 * fmax(h[i], h[j]);
+        if (sqrt(r2) < 2.01 * fmax(h[i], h[j]))
+            near |= i % SPH_LANES < SPH_LANES / 2 ? 1u : 2u;
     }
     return near;
 }
 
-/* Those within reach and some beyond; every other group has all. */
+/* Those of a span in the making, by who has to meet them. */
+struct making {
+    uint32_t n[3], source[3][NEAR]; /* all lanes, the lower, the upper */
+};
+
+/* What has no partner is for all. */
+static void end_span(struct cloud *p, struct making *m, uint64_t *n_span, uint64_t *n_step)
+{
+    const uint32_t turns = m->n[1] < m->n[2] ? m->n[1] : m->n[2], n = m->n[0] + m->n[1] + m->n[2];
+    uint32_t base = UINT32_MAX, all[NEAR], at = 0;
+
+    if (n == 0)
+        return;
+    for (int by = 0; by < 3; by++)
+        for (uint32_t k = by ? turns : 0; k < m->n[by]; k++)
+            all[at++] = m->source[by][k];
+    p->span[*n_span] = (sph_span){*n_step, 0, (uint16_t)n, (uint16_t)at};
+    for (uint32_t k = 0; k < 2 * turns; k++)
+        all[at++] = m->source[1 + k % 2][k / 2];
+    for (uint32_t k = 0; k < n; k++)
+        base = all[k] < base ? all[k] : base;
+    for (uint32_t k = 0; k < n; k++)
+        p->step[(*n_step)++] = (uint16_t)(all[k] - base);
+    p->span[(*n_span)++].base = base;
+    memset(m->n, 0, sizeof(m->n));
+}
+
+/* Those within reach and some beyond; every other group has all, for all lanes. */
 static void make_lists(struct cloud *p)
 {
     const uint64_t groups = (N + SPH_LANES - 1) / SPH_LANES;
-    uint64_t n_span = 0, n_step = 0, seed = 5;
+    uint64_t n_span = 0, n_step = 0, seed = 5, turns = 0;
+    struct making m = {{0}, {{0}}};
 
     p->span = calloc(groups * NEAR, sizeof(*p->span));
     p->step = calloc(groups * NEAR, sizeof(*p->step));
     assert_true(p->span && p->step);
     for (uint64_t g = 0; g < groups; g++) {
+        uint32_t first = 0;
         p->begin[g] = n_span;
         for (uint32_t k = 0; k < NEAR; k++) {
             const uint32_t j = place(p->setup, k);
-            if (g % 2 && !is_near(p, g, j) && unit(&seed) > 0.2)
+            unsigned near = is_near(p, g, j);
+            if (g % 2 && !near && unit(&seed) > 0.2)
                 continue;
-            if (n_span == p->begin[g] || j - p->span[n_span - 1].base > UINT16_MAX)
-                p->span[n_span++] = (sph_span){n_step, j, 0};
-            p->span[n_span - 1].count++;
-            p->step[n_step++] = (uint16_t)(j - p->span[n_span - 1].base);
+            if (!near && g % 2)
+                near = unit(&seed) > 0.5 ? 1 : 2;
+            if (m.n[0] + m.n[1] + m.n[2] == 0)
+                first = j;
+            if (j - first >= UINT16_MAX) {
+                end_span(p, &m, &n_span, &n_step);
+                first = j;
+            }
+            const int by = g % 2 && near != 3 && j / SPH_LANES != g ? (int)near : 0;
+            m.source[by][m.n[by]++] = j;
         }
+        end_span(p, &m, &n_span, &n_step);
+        for (uint64_t s = p->begin[g]; s < n_span; s++)
+            turns += (uint64_t)(p->span[s].count - p->span[s].common) / 2;
         assert_true(p->setup->stride < 300 || n_span - p->begin[g] > 1);
     }
+    assert_true(turns > 0);
     p->begin[groups] = n_span;
 }
 

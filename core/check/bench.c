@@ -221,12 +221,15 @@ static int make_views(struct bench *b, struct error *e)
     b->dst = watch_memory(n * sizeof(sph_column), "batch->dst");
     b->src[0] = watch_memory(n * sizeof(sph_column), "batch->src");
     b->src[1] = watch_memory(n * sizeof(sph_column), "batch->src");
+    b->alone = watch_memory(n * sizeof(sph_column), "batch->dst");
     b->param = watch_memory(params * sizeof(double), "batch->param");
-    if (!b->dst || !b->src[0] || !b->src[1] || !b->param)
+    if (!b->dst || !b->src[0] || !b->src[1] || !b->alone || !b->param)
         return error_memory(e, "a batch", n * sizeof(sph_column));
     for (uint32_t k = 0; k < n; k++) {
         b->dst[k] = b->shut_column[k] >= 0 ? particles_column(&b->shut, b->shut_column[k])
                                            : particles_column(&b->own, b->own_column[k]);
+        b->alone[k] =
+            bench_prop(b, k)->access & SPH_DST_SWEEP ? (sph_column){.data = NULL} : b->dst[k];
         if (!(bench_prop(b, k)->access & SPH_SRC_READ))
             continue;
         b->src[0][k] = particles_column(&b->own, b->own_column[k]);
@@ -234,6 +237,7 @@ static int make_views(struct bench *b, struct error *e)
     }
     memcpy(b->param, b->use.config.value, params * sizeof(double));
     watch_seal(b->dst);
+    watch_seal(b->alone);
     watch_seal(b->src[0]);
     watch_seal(b->src[1]);
     watch_seal(b->param);

@@ -56,7 +56,7 @@ struct bench {
     sph_span *span[2];
     uint16_t *step[2];
     sph_kernel_form kernel;
-    sph_column *dst, *src[2];
+    sph_column *dst, *src[2], *alone; /* alone: what before and after are given for dst */
     double *param;
     double spacing, support;
 };

@@ -300,9 +300,11 @@ static int one_sweep(struct sweep *s, struct bench *b, const struct ranges *rang
 {
     const struct pass_spec *spec = b->spec;
     const sph_batch batch = bench_batch(b);
+    sph_batch alone = batch;
 
+    alone.dst = b->alone;
     stage(b->subject, "before in %s", where);
-    if (call_all(s, b, "before", spec->before, &batch, ranges, threads, e))
+    if (call_all(s, b, "before", spec->before, &alone, ranges, threads, e))
         return -1;
     stage(b->subject, "%s in %s", spec->label, where);
     if (spec->shape == SPH_POINT &&
@@ -317,7 +319,7 @@ static int one_sweep(struct sweep *s, struct bench *b, const struct ranges *rang
             return -1;
     }
     stage(b->subject, "after in %s", where);
-    return call_all(s, b, "after", spec->after, &batch, ranges, threads, e);
+    return call_all(s, b, "after", spec->after, &alone, ranges, threads, e);
 }
 
 /* Sweeps until no destination asks for more. */

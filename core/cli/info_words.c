@@ -21,7 +21,7 @@ const char *info_access(uint32_t access, char *out, size_t size)
     } words[] = {{SPH_DST_READ, "read"},   {SPH_SRC_READ, "read at sources"},
                  {SPH_DST_WRITE, "write"}, {SPH_DST_SUM, "sum"},
                  {SPH_DST_MAX, "max"},     {SPH_DST_MIN, "min"},
-                 {SPH_WORK, "work"}};
+                 {SPH_WORK, "work"},       {SPH_DST_SWEEP, "sweep alone"}};
     size_t n = 0;
 
     out[0] = '\0';

@@ -74,11 +74,10 @@ AVX512_INLINE unsigned sees(struct nearest n, __m512 most, __m512 least, int uni
     return uniform ? mask : mask | _mm512_cmp_ps_mask(n.own, least, _CMP_LE_OQ);
 }
 
-AVX512_INLINE void append(struct found *out, int by, __m512i index, unsigned mask)
+AVX512_INLINE uint32_t *append(uint32_t *out, __m512i index, unsigned mask)
 {
-    _mm512_storeu_si512(out->source[by] + out->n[by],
-                        _mm512_maskz_compress_epi32((__mmask16)mask, index));
-    out->n[by] += (size_t)__builtin_popcount(mask);
+    _mm512_storeu_si512(out, _mm512_maskz_compress_epi32((__mmask16)mask, index));
+    return out + __builtin_popcount(mask);
 }
 
 AVX512_INLINE void near_points(const struct packed_leaf *pack, const uint32_t *leaf,
@@ -86,6 +85,9 @@ AVX512_INLINE void near_points(const struct packed_leaf *pack, const uint32_t *l
                                int uniform, uint32_t own, struct found *out)
 {
     const __m512i iota = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7);
+    uint32_t *common = out->source[BY_BOTH] + out->n[BY_BOTH];
+    uint32_t *lower = out->source[BY_LOWER] + out->n[BY_LOWER];
+    uint32_t *upper = out->source[BY_UPPER] + out->n[BY_UPPER];
 
     for (size_t k = 0; k < n; k += 2) {
         uint32_t a = chosen[k], b = chosen[k + 1 < n ? k + 1 : k];
@@ -113,10 +115,13 @@ AVX512_INLINE void near_points(const struct packed_leaf *pack, const uint32_t *l
             low |= seen;
             high |= seen;
         }
-        append(out, BY_BOTH, index, low & high);
-        append(out, BY_LOWER, index, low & ~high);
-        append(out, BY_UPPER, index, high & ~low);
+        common = append(common, index, low & high);
+        lower = append(lower, index, low & ~high);
+        upper = append(upper, index, high & ~low);
     }
+    out->n[BY_BOTH] = (size_t)(common - out->source[BY_BOTH]);
+    out->n[BY_LOWER] = (size_t)(lower - out->source[BY_LOWER]);
+    out->n[BY_UPPER] = (size_t)(upper - out->source[BY_UPPER]);
 }
 
 AVX512 void filter_near_points_avx512(const struct packed_leaf *pack, const uint32_t *leaf,

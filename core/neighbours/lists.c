@@ -149,10 +149,10 @@ static int resize(void *array, size_t *capacity, size_t n, size_t size, struct e
     void *old, *fresh;
 
     memcpy(&old, array, sizeof old);
-    if (n <= *capacity && *capacity - n <= n / 32 + 64) {
+    if (n <= *capacity && *capacity - n <= n / 64 + 64) {
         return 0;
     }
-    n += n / 128 + 16;
+    n += n / 1024 + 16;
     fresh = realloc(old, n * size);
     *capacity = fresh ? n : *capacity;
     old = fresh ? fresh : old;

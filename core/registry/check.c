@@ -91,11 +91,17 @@ static int check_no_sources(const sph_list *props, const char *what, struct erro
 {
     const sph_prop *p = props->data;
 
-    for (uint32_t i = 0; i < props->count; i++)
+    for (uint32_t i = 0; i < props->count; i++) {
         if (p[i].access & SPH_SRC_READ)
             return error_set(e, EXIT_REFUSED,
                              "property \"%s\" is read at the sources, but %s has none", p[i].name,
                              what);
+        if (p[i].access & SPH_DST_SWEEP)
+            return error_set(e, EXIT_REFUSED,
+                             "property \"%s\" is for the sweep alone (SPH_DST_SWEEP), but %s has "
+                             "none",
+                             p[i].name, what);
+    }
     return 0;
 }
 

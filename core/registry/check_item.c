@@ -148,7 +148,8 @@ static int check_params(const sph_list *params, struct error *e)
 static int check_prop(const sph_prop *p, struct error *e)
 {
     const uint32_t sets = p->access & (SPH_DST_WRITE | SPH_DST_SUM | SPH_DST_MAX | SPH_DST_MIN);
-    const uint32_t known = sets | (p->access & (SPH_DST_READ | SPH_SRC_READ | SPH_WORK));
+    const uint32_t known =
+        sets | (p->access & (SPH_DST_READ | SPH_SRC_READ | SPH_WORK | SPH_DST_SWEEP));
 
     if (p->type < SPH_SCALAR || p->type > SPH_INT64)
         return error_set(e, EXIT_REFUSED, "type of property \"%s\" is %u, which is unknown",
@@ -158,6 +159,11 @@ static int check_prop(const sph_prop *p, struct error *e)
     if (p->access != known)
         return error_set(e, EXIT_REFUSED, "access of property \"%s\" has unknown bits (0x%x)",
                          p->name, p->access & ~known);
+    if ((p->access & SPH_DST_SWEEP) && (sets || !(p->access & SPH_DST_READ)))
+        return error_set(e, EXIT_REFUSED,
+                         "access of property \"%s\" is for the sweep alone (SPH_DST_SWEEP), which "
+                         "goes with SPH_DST_READ and nothing that sets it",
+                         p->name);
     if (sets & (sets - 1))
         return error_set(e, EXIT_REFUSED,
                          "access of property \"%s\" is more than one of write, sum, max and min",

@@ -14,7 +14,7 @@ static int check_part_props(const sph_item *whole, const sph_item *part, struct 
     for (uint32_t i = 0; i < part->props.count; i++) {
         const sph_prop *own = check_find_prop(&whole->props, p[i].name);
         /* That a part starts from what another leaves behind is the whole's own business. */
-        const uint32_t needed = p[i].access & ~SPH_WORK;
+        const uint32_t needed = p[i].access & ~(SPH_WORK | SPH_DST_SWEEP);
         if (!own || own->type != p[i].type || (own->access & needed) != needed)
             return error_set(e, EXIT_REFUSED,
                              "\"%s\" does not declare the property \"%s\" as its part \"%s\" "

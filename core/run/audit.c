@@ -60,7 +60,8 @@ static void trap(int signal_number, siginfo_t *info, void *context)
         snprintf(
             line, sizeof line,
             "sph: audit: %s followed a NULL pointer, such as the sources' column of a property "
-            "that it does not declare with SPH_SRC_READ\n",
+            "that it does not declare with SPH_SRC_READ, or in before or after that of one which it "
+            "declares with SPH_DST_SWEEP\n",
             r->audit->pass->name);
         ssize_t written = write(STDERR_FILENO, line, strlen(line));
         (void)written;

@@ -12,6 +12,9 @@
 
 #define STRIDE (CHUNK + 2 * SPH_LANES) /* of a chunk that is laid out in doubles */
 
+#define WRITES (SPH_DST_WRITE | SPH_DST_SUM | SPH_DST_MAX | SPH_DST_MIN)
+#define SUMS (SPH_DST_SUM | SPH_DST_MAX | SPH_DST_MIN)
+
 enum stage { STAGE_RESET, STAGE_BEFORE, STAGE_POINT, STAGE_SWEEP, STAGE_AFTER };
 #define STAGES_MOST 4
 
@@ -44,10 +47,18 @@ static uint32_t n_prop(const struct work *w)
     return w->p->use.item->props.count;
 }
 
+/* Whether calls other than sweeps are given the property. */
+static bool is_given(const struct work *w, uint32_t k)
+{
+    const uint32_t access = prop_at(w, k)->access;
+    return (access & (SPH_DST_READ | WRITES)) && !(access & SPH_DST_SWEEP);
+}
+
 static bool in_floats(const struct work *w, uint32_t k)
 {
-    const struct column *c = &destinations(w)->column[w->p->dst.column[k]];
-    return column_is_real(c) && c->size == sizeof(float);
+    const int column = w->p->dst.column[k];
+    const struct column *c = column < 0 ? NULL : &destinations(w)->column[column];
+    return c && column_is_real(c) && c->size == sizeof(float);
 }
 
 /* The smoothing lengths, if the pass is given them and they are not held in doubles. */
@@ -56,9 +67,6 @@ static const struct column *smoothing_in_floats(const struct work *w)
     const struct column *h = &destinations(w)->column[w->r->plan->array[w->p->dst.array].smoothing];
     return w->p->shape == SPH_PAIR && h->size == sizeof(float) ? h : NULL;
 }
-
-#define WRITES (SPH_DST_WRITE | SPH_DST_SUM | SPH_DST_MAX | SPH_DST_MIN)
-#define SUMS (SPH_DST_SUM | SPH_DST_MAX | SPH_DST_MIN)
 
 /* -- Stages of one chunk ------------------------------------------------------------------------ */
 
@@ -132,7 +140,9 @@ static void lay_out(const struct work *w, char *scratch, sph_column *view, sph_b
         const struct column *c = &destinations(w)->column[w->p->dst.column[k]];
         const bool loads = w->p->max_sweeps || prop_at(w, k)->access != SPH_DST_WRITE;
         view[k] = w->alone.dst[k];
-        if (in_floats(w, k))
+        if (in_floats(w, k) && !is_given(w, k))
+            view[k].data = NULL;
+        else if (in_floats(w, k))
             at = lay_out_one(c, at, b->first, b->count, loads, &view[k]);
     }
     b->dst = view;
@@ -145,7 +155,7 @@ static void put_back(const struct work *w, const char *scratch, uint64_t first, 
         at += STRIDE;
     for (uint32_t k = 0; k < n_prop(w); k++) {
         const struct column *c = &destinations(w)->column[w->p->dst.column[k]];
-        if (!in_floats(w, k))
+        if (!in_floats(w, k) || !is_given(w, k))
             continue;
         for (uint32_t q = 0; (prop_at(w, k)->access & WRITES) && q < c->ncomp; q++)
             column_store(c, q, first, count, at + q * STRIDE);
@@ -253,7 +263,9 @@ static void batch_alone(struct work *w)
     const struct plan_array *a = &w->r->plan->array[p->dst.array];
     sph_column *dst = p->space;
     for (uint32_t k = 0; k < n_prop(w); k++)
-        dst[k] = p->dst.column[k] < 0 ? (sph_column){0} : particles_column(&a->p, p->dst.column[k]);
+        dst[k] = p->dst.column[k] < 0 || prop_at(w, k)->access & SPH_DST_SWEEP
+                     ? (sph_column){0}
+                     : particles_column(&a->p, p->dst.column[k]);
     w->alone = run_batch(w->r, &p->use, dst, n_prop(w), a->p.n);
     if (p->shape == SPH_PAIR)
         w->alone.h_dst = particles_column(&a->p, a->smoothing);
@@ -314,7 +326,7 @@ static int make_room(struct work *w, struct error *e)
 {
     size_t doubles = smoothing_in_floats(w) ? STRIDE : 0;
     for (uint32_t k = 0; k < n_prop(w); k++)
-        if (w->p->dst.column[k] >= 0 && in_floats(w, k))
+        if (in_floats(w, k) && is_given(w, k))
             doubles += (size_t)destinations(w)->column[w->p->dst.column[k]].ncomp * STRIDE;
     if (doubles && (w->p->before || w->p->after || w->p->shape == SPH_POINT))
         w->laid = ((n_prop(w) * sizeof(sph_column) + 63) / 64 + (doubles * 8 + 63) / 64 + 2) * 64;

@@ -15,8 +15,9 @@ static const sph_param params[] = {
 static const sph_prop props[] = {
     SPH_PROP("m", "kg", "mass", SPH_SCALAR, SPH_SRC_READ, NAN),
     SPH_PROP("rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN),
-    SPH_PROP("p", "J/m^d", "pressure", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN),
-    SPH_PROP("v", "m/s", "velocity", SPH_VECTOR, SPH_DST_READ | SPH_SRC_READ, 0.0),
+    SPH_PROP("p", "J/m^d", "pressure", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ | SPH_DST_SWEEP,
+             NAN),
+    SPH_PROP("v", "m/s", "velocity", SPH_VECTOR, SPH_DST_READ | SPH_SRC_READ | SPH_DST_SWEEP, 0.0),
     SPH_PROP("grad_rho", "kg/m^(d+1)", "gradient of the density", SPH_VECTOR,
              SPH_DST_SUM | SPH_WORK, 0.0),
     SPH_PROP("grad_p", "J/m^(d+1)", "gradient of the pressure", SPH_VECTOR, SPH_DST_SUM | SPH_WORK,

@@ -15,20 +15,17 @@ static const sph_param params[] = {
               10.0),
 };
 
+#define OF_PAIRS (SPH_DST_READ | SPH_SRC_READ | SPH_DST_SWEEP)
 static const sph_prop props[] = {
     SPH_PROP("m", "kg", "mass", SPH_SCALAR, SPH_SRC_READ, NAN),
-    SPH_PROP("rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN),
-    SPH_PROP("p", "J/m^d", "pressure", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN),
+    SPH_PROP("rho", "kg/m^d", "density", SPH_SCALAR, OF_PAIRS, NAN),
+    SPH_PROP("p", "J/m^d", "pressure", SPH_SCALAR, OF_PAIRS, NAN),
     SPH_PROP("cs", "m/s", "speed of sound", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, NAN),
     SPH_PROP("v", "m/s", "velocity", SPH_VECTOR, SPH_DST_READ | SPH_SRC_READ, 0.0),
-    SPH_PROP("volume", "", "volume correction of the forces", SPH_SCALAR,
-             SPH_DST_READ | SPH_SRC_READ, NAN),
-    SPH_PROP("grad_rho", "kg/m^(d+1)", "gradient of the density", SPH_VECTOR,
-             SPH_DST_READ | SPH_SRC_READ, NAN),
-    SPH_PROP("grad_p", "J/m^(d+1)", "gradient of the pressure", SPH_VECTOR,
-             SPH_DST_READ | SPH_SRC_READ, NAN),
-    SPH_PROP("grad_v", "1/s", "velocity gradient, a row a component", SPH_MATRIX,
-             SPH_DST_READ | SPH_SRC_READ, NAN),
+    SPH_PROP("volume", "", "volume correction of the forces", SPH_SCALAR, OF_PAIRS, NAN),
+    SPH_PROP("grad_rho", "kg/m^(d+1)", "gradient of the density", SPH_VECTOR, OF_PAIRS, NAN),
+    SPH_PROP("grad_p", "J/m^(d+1)", "gradient of the pressure", SPH_VECTOR, OF_PAIRS, NAN),
+    SPH_PROP("grad_v", "1/s", "velocity gradient, a row a component", SPH_MATRIX, OF_PAIRS, NAN),
     SPH_PROP("force", "m/s^2", "sum of the pairs' momentum fluxes", SPH_VECTOR,
              SPH_DST_SUM | SPH_WORK, 0.0),
     SPH_PROP("power", "W/kg", "sum of the pairs' energy fluxes", SPH_SCALAR, SPH_DST_SUM | SPH_WORK,

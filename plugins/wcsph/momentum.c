@@ -10,7 +10,7 @@ static const sph_param params[] = {WCSPH_VISCOSITY, WCSPH_GRAVITY};
 
 static const sph_prop props[] = {
     WCSPH_M,   WCSPH_V,
-    WCSPH_RHO, WCSPH_P_RHO2(WCSPH_READ),
+    WCSPH_RHO, WCSPH_P_RHO2(WCSPH_READ | SPH_DST_SWEEP),
     WCSPH_CS,  SPH_PROP("drho", "kg/m^d/s", "rate of the density", SPH_SCALAR, SPH_DST_READ, 0.0),
     WCSPH_A,   WCSPH_DT,
 };
@@ -45,9 +45,22 @@ static void add_gravity(const sph_batch *b, const struct wcsph_finish *at, uint6
     }
 }
 
+/* Of n particles: whether the force's bound is the smaller one anywhere. */
+static int is_forced(const double *restrict h, const double *restrict a2, const double *restrict dt,
+                     int n)
+{
+    int forced = 0;
+    for (int k = 0; k < n; k++) {
+        const double square = dt[k] * dt[k];
+        forced |= h[k] * h[k] < square * square * a2[k];
+    }
+    return forced;
+}
+
 /* Viscosity's bound is Monaghan's (1989, J. Comput. Phys. 82, 1, eq. 3.4) with |mu| <= h |div v|, of which
  * the continuity equation has just given -drho / rho; the force's is sqrt(h / |a|), in units of which the
- * scene's cfl is meant. In pieces, so that several particles are worked on at once. */
+ * scene's cfl is meant: the roots are taken where it matters. In pieces, so that several particles are
+ * worked on at once. */
 sph_status wcsph_finish(const sph_batch *b, const struct wcsph_finish *at)
 {
     const double alpha = b->param[at->alpha], beta = b->param[at->beta];
@@ -61,12 +74,11 @@ sph_status wcsph_finish(const sph_batch *b, const struct wcsph_finish *at)
         double *restrict dt = (double *)b->dst[at->dt].data + i;
         const int n = end - i < PIECE ? (int)(end - i) : PIECE;
         add_gravity(b, at, i, n, a2);
-        for (int k = 0; k < n; k++) {
-            const double sound =
-                h[k] * rho[k] / (of_cs * cs[k] * rho[k] + of_mu * h[k] * fabs(drho[k]));
-            const double force = sqrt(h[k] / sqrt(a2[k]));
-            dt[k] = sound < force ? sound : force;
-        }
+        for (int k = 0; k < n; k++)
+            dt[k] = h[k] * rho[k] / (of_cs * cs[k] * rho[k] + of_mu * h[k] * fabs(drho[k]));
+        if (is_forced(h, a2, dt, n))
+            for (int k = 0; k < n; k++)
+                dt[k] = fmin(dt[k], sqrt(h[k] / sqrt(a2[k])));
     }
     return SPH_OK;
 }

@@ -12,7 +12,7 @@ static const sph_prop props[] = {
     WCSPH_M,
     WCSPH_V,
     WCSPH_RHO,
-    WCSPH_P_RHO2(WCSPH_READ),
+    WCSPH_P_RHO2(WCSPH_READ | SPH_DST_SWEEP),
     WCSPH_CS,
     SPH_PROP("drho", "kg/m^d/s", "rate of the density", SPH_SCALAR, SPH_DST_SUM | SPH_DST_READ,
              0.0),

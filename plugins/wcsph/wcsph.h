@@ -27,7 +27,7 @@ sph_status wcsph_finish(const sph_batch *b, const struct wcsph_finish *at);
 
 #define WCSPH_READ (SPH_DST_READ | SPH_SRC_READ)
 #define WCSPH_M SPH_PROP("m", "kg", "mass", SPH_SCALAR, SPH_SRC_READ, NAN)
-#define WCSPH_V SPH_PROP("v", "m/s", "velocity", SPH_VECTOR, WCSPH_READ, 0.0)
+#define WCSPH_V SPH_PROP("v", "m/s", "velocity", SPH_VECTOR, WCSPH_READ | SPH_DST_SWEEP, 0.0)
 #define WCSPH_RHO SPH_PROP("rho", "kg/m^d", "density", SPH_SCALAR, WCSPH_READ, NAN)
 #define WCSPH_P_RHO2(access)                                                                       \
     SPH_PROP("p_rho2", "J m^d/kg^2", "pressure over the square of the density", SPH_SCALAR,        \

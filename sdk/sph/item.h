@@ -28,6 +28,9 @@ SPH_BEGIN_DECLS
 #define SPH_DST_MAX 0x10u /* takes the maximum; starts as above */
 #define SPH_DST_MIN 0x20u /* takes the minimum; starts as above */
 #define SPH_WORK 0x40u    /* with one of the above: working storage, of no interest in a snapshot */
+/* With SPH_DST_READ, of a pair function: its `run` alone reads the value. In `before` and `after`
+ * dst[k].data is NULL then, which spares the host to lay it out in doubles for them. */
+#define SPH_DST_SWEEP 0x80u
 #define SPH_DST_UPDATE (SPH_DST_READ | SPH_DST_WRITE)
 
 /* A property that an item touches. Items that declare the same name mean the same column, so its

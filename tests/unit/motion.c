@@ -234,6 +234,8 @@ FUNCTION(wide, "gather-both", SPH_NO_LIST) = {.size = SIZE(sph_function),
 
 static sph_status widen_run(const sph_batch *b)
 {
+    if (!b->dst[3].data)
+        return SPH_E_INVALID;
     for (uint64_t i = b->first; i < b->first + b->count; i++)
         for (struct walk w = walk_begin(b, i); walk_next(&w);)
             at(&b->dst[1], 0)[i] += distance(b, i, w.j) < MOTION_SUPPORT * at(&b->dst[0], 0)[i];
@@ -243,6 +245,8 @@ static sph_status widen_run(const sph_batch *b)
 static sph_status widen_after(const sph_batch *b)
 {
     int32_t *again = b->dst[2].data;
+    if (b->dst[3].data) /* for the sweep alone */
+        return SPH_E_INVALID;
     for (uint64_t i = b->first; i < b->first + b->count; i++) {
         again[i] = at(&b->dst[1], 0)[i] < b->param[0];
         if (again[i])
@@ -256,6 +260,7 @@ static const sph_prop widen_props[] = {
     {"h", "", "", SPH_SCALAR, SPH_DST_UPDATE, NAN},
     {"found", "", "", SPH_SCALAR, SPH_DST_SUM, 0},
     {"again", "", "", SPH_INT32, SPH_DST_WRITE, 0},
+    {"rho", "", "", SPH_SCALAR, SPH_DST_READ | SPH_DST_SWEEP, 0},
 };
 FUNCTION(widen, "widen", SPH_LIST(widen_params)) = {.size = SIZE(sph_function),
                                                     .shape = SPH_PAIR,

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define BLOCK 32
+#define BLOCK 64
 #define EXACT_NO UINT32_MAX
 #define CODE_MOST 65535
 #define ERROR_MOST 5e-4  /* of a block's smallest reach: what may be lost by rounding */

@@ -1,9 +1,10 @@
 /* neighbours/skin.h -- whether neighbour lists are still right: where particles were when the
  * lists were made, kept compactly, against where they are.
  *
- * Positions are kept in 16 bits an axis within the box of 32 particles, h in 16 bits with 11
- * digits unless they are all the same: some 8 to 10 bytes a particle in 3D. What rounding can have hidden is added to the
- * displacement and taken off h, so the answer errs on the safe side: by less than 0.001 of the
+ * Positions are kept in 16 bits an axis within the box of 64 particles, h in 16 bits with 11
+ * digits unless they are all the same: some 7 to 9 bytes a particle in 3D. What rounding can have
+ * hidden is added to the displacement and taken off h, so the answer errs on the safe side: by less
+ * than 0.001 of the
  * reach, 1 % of a skin of 0.1. Blocks that are too wide for that (with a particle that has flown
  * away) or whose h differ too much are kept as they are. */
 #ifndef NEIGHBOURS_SKIN_H
@@ -18,8 +19,8 @@ struct skin {
     bool even; /* all h were the same, and are not kept one by one */
     size_t n, n_block, n_exact;
     struct skin_block *block;
-    uint16_t *code; /* [n_block][dim, and 1 unless even][32]: positions and h */
-    double *exact;  /* [n_exact][dim + 1][32] */
+    uint16_t *code; /* [n_block][dim, and 1 unless even][64]: positions and h */
+    double *exact;  /* [n_exact][dim + 1][64] */
     size_t block_capacity, exact_capacity;
 };
 

@@ -19,6 +19,16 @@ from step_precision import precision
 
 PRECISIONS = ("double", "mixed", "single")
 THREADS = (1, 2)
+# Bars that are known to be missed, and what was measured. The faster the pair passes, the less of a step
+# they are: these have got faster, and the whole steps with them.
+KNOWN = {
+    ("wcsph-3d", "mixed", 2): "1.42 to 1.51",
+    ("wcsph-3d", "single", 2): "1.50 to 1.57",
+    ("wcsph-2d", "mixed", 1): "1.52 to 1.58",
+    ("wcsph-2d", "mixed", 2): "1.56 to 1.64",
+    ("wcsph-2d", "single", 1): "1.55 to 1.60",
+    ("wcsph-2d", "single", 2): "1.60 to 1.65",
+}
 
 
 def water(dim, side):
@@ -117,8 +127,9 @@ def measure(program, rounds, name, scene, steps):
     for p in PRECISIONS:
         for t in THREADS:
             ratio = columns[f"{p} x{t}"]["step / pair passes"]
+            known = KNOWN.get((name, p, t), "")
             print(f"  {'OK  ' if ratio <= 1.5 else 'MISS'} {name}, {p} x{t}: "
-                  f"whole step / pair passes {ratio:.3f} (<= 1.5)")
+                  f"whole step / pair passes {ratio:.3f} (<= 1.5){known and '; known: '}{known}")
 
 
 def order(program, rounds, short):

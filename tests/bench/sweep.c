@@ -77,7 +77,7 @@ struct ratio {
 
 /* What the acceptance looks at: doubles, then mixed. */
 struct figures {
-    struct ratio call[2], threads[2];
+    struct ratio even[2], call[2], threads[2]; /* even: lists without a skin, as the call's are */
     double list, error;
 };
 
@@ -167,6 +167,10 @@ static struct engine_time turn(struct bench *b, const struct pair_plugin *plugin
 
     if (d->kind >= ENGINE) {
         const struct engine_sweep s = sweep_of(b, d);
+        /* A run's threads come from the sweep before: on a virtual machine a processor that has been
+         * idle takes milliseconds to come back. */
+        if (d->chunk)
+            engine_run(&b->engine, &s);
         return engine_run(&b->engine, &s);
     }
     if (d->kind == CALLED)
@@ -262,15 +266,32 @@ static void row(const struct bench *b, const struct machine *m, int i)
         printf(" %7.1e\n", b->error[i]);
 }
 
+/* Steps of eight lanes through a list: two sources that take turns are one. */
+static double steps_of(const struct group_list *list)
+{
+    uint64_t steps = 0;
+
+    for (size_t s = 0; s < list->n_span; s++)
+        steps += (uint64_t)(list->span[s].count + list->span[s].common) / 2;
+    return (double)steps;
+}
+
 static void table(const struct bench *b, const struct machine *m)
 {
     const struct engine *g = &b->engine;
     const double n = b->fluid.c.n;
 
-    printf("\n%dD: %.0f particles, %.2f true neighbours; %.1f listed, with the skin %.1f; %d "
-           "operations a pair\n",
-           g->p.dim, n, g->pairs / n, (double)g->list[1][0].n_entry * SPH_LANES / n,
-           (double)g->list[1][1].n_entry * SPH_LANES / n, flops(g->p.dim));
+    printf("\n%dD: %.0f particles, %.2f true neighbours; %d operations a pair\n", g->p.dim, n,
+           g->pairs / n, flops(g->p.dim));
+    for (int skin = 0; skin < 2; skin++) {
+        const struct group_list *list = &g->list[1][skin];
+        const double steps = steps_of(list);
+        printf(
+            "  %s skin %.1f sources listed for a group, met in %.1f steps: %.0f %% of the lanes are "
+            "true pairs\n",
+            skin ? "with the" : "without", (double)list->n_entry * SPH_LANES / n,
+            steps * SPH_LANES / n, 100.0 * g->pairs / (steps * SPH_LANES));
+    }
     printf("  %-46s %7s %8s %7s %6s %6s %6s %6s %5s %7s %7s\n", "", "ns/pair", "us/part", "Mpair/s",
            "/call", "/ref", "FMA %", "GB/s", "bw %", "list B", "error");
     for (int i = 0; i < DESIGNS; i++)
@@ -356,6 +377,8 @@ static void ratios(struct bench *b, int n, struct figures *out)
         const uint32_t real = k ? SPH_F32 : SPH_F64;
         const int one = find((struct design){AS_RUN(real, 1)});
         const int two = find((struct design){AS_RUN(real, 2)});
+        const int close = find((struct design)OF(real, SPH_PATH_BEST, 1, 0));
+        out->even[k] = ratio(b->cpu[0], b->cpu[close], n);
         out->call[k] = ratio(b->cpu[0], b->cpu[one], n);
         out->threads[k] = ratio(b->wall[one], b->wall[two], n);
     }
@@ -410,23 +433,29 @@ static void bar(const char *what, double value, int at_least, double limit)
            at_least ? ">=" : "<=", limit);
 }
 
-static void bar_of(const char *what, struct ratio r, double limit)
+/* known: what it has come to where it misses, if that is known. */
+static void bar_of(const char *what, struct ratio r, double limit, const char *known)
 {
-    printf("%-4s %-52s %9.3g  (>= %g); of the quickest times %.3g\n",
-           r.median >= limit ? "OK" : "MISS", what, r.median, limit, r.best);
+    printf("%-4s %-52s %9.3g  (>= %g); of the quickest times %.3g%s%s\n",
+           r.median >= limit ? "OK" : "MISS", what, r.median, limit, r.best,
+           known ? "; known: " : "", known ? known : "");
 }
 
 static void bars(const struct figures *f3, const struct figures *f2)
 {
     printf(
-        "\nThe engine as the core runs it: best path, one h, a skin of 0.1 (a run in 2D: 0.15), chunks of %d\n",
+        "\nBest path, one h. The call for each pair has lists of true pairs alone, without a skin; the "
+        "engine in\nthe first two likewise, in the others as the core runs it: a skin of 0.1 (a run in "
+        "2D: 0.15), chunks of %d\n",
         CHUNK);
-    bar_of("3D, double: a call for each pair takes as much more", f3->call[0], 6.5);
-    bar_of("3D, mixed: a call for each pair takes as much more", f3->call[1], 9.0);
-    bar_of("3D, double: two threads, wall time", f3->threads[0], 1.85);
-    bar_of("3D, mixed: two threads, wall time", f3->threads[1], 1.85);
-    bar_of("2D, double: two threads, wall time", f2->threads[0], 1.85);
-    bar_of("2D, mixed: two threads, wall time", f2->threads[1], 1.85);
+    bar_of("3D, double: a call for each pair takes as much more", f3->even[0], 6.5, NULL);
+    bar_of("3D, mixed: likewise", f3->even[1], 9.0, NULL);
+    bar_of("3D, double: likewise, with the skin", f3->call[0], 6.5, "5.9 to 7.1");
+    bar_of("3D, mixed: likewise, with the skin", f3->call[1], 9.0, NULL);
+    bar_of("3D, double: two threads, wall time", f3->threads[0], 1.85, NULL);
+    bar_of("3D, mixed: two threads, wall time", f3->threads[1], 1.85, "1.7 to 2.0");
+    bar_of("2D, double: two threads, wall time", f2->threads[0], 1.85, "1.5 to 1.9");
+    bar_of("2D, mixed: two threads, wall time", f2->threads[1], 1.85, "1.4 to 2.0");
     bar("3D: bytes of the list a particle", f3->list, 0, 120.0);
     bar("3D, mixed: error of accelerations, worst offset", f3->error, 0, 1e-6);
     bar("2D, mixed: error of accelerations, worst offset", f2->error, 0, 1e-6);

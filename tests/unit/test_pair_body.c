@@ -123,18 +123,59 @@ static void reset_sums(void)
     memset(cloud.flow, 0, sizeof(cloud.flow));
 }
 
+/* Bit 0: source j may be within reach of the lower lanes of group g; bit 1: of the upper. */
+static unsigned is_near(uint64_t g, int j)
+{
+    unsigned near = 0;
+
+    for (uint64_t i = g * SPH_LANES; i < (g + 1) * SPH_LANES && i < N; i++) {
+        double r2 = 0;
+        for (int c = 0; c < cloud.dim; c++)
+            r2 += pow(cloud.x[(uint64_t)c * PLANE + i] - cloud.x[(uint64_t)c * PLANE + (uint64_t)j],
+                      2);
+        if (sqrt(r2) < 2.01 * fmax(cloud.h[i], cloud.h[j]))
+            near |= i % SPH_LANES < SPH_LANES / 2 ? 1u : 2u;
+    }
+    return near;
+}
+
+/* A group's second span: those that one half of it alone can meet take turns, if they find a partner. */
+static void make_turns(uint64_t g, sph_span *span, uint16_t *list)
+{
+    uint16_t half[2][SOURCES], n[2] = {0, 0}, at = 0;
+
+    for (int j = CUT; j < SOURCES; j++) {
+        const unsigned near = is_near(g, j);
+        if (near == 3 || (uint64_t)j / SPH_LANES == g)
+            list[at++] = (uint16_t)(j - CUT);
+        else
+            half[near == 2][n[near == 2]++] = (uint16_t)(j - CUT);
+    }
+    for (int which = 0; which < 2; which++)
+        while (n[which] > n[!which])
+            list[at++] = half[which][--n[which]];
+    span->common = at;
+    for (uint16_t k = 0; k < 2 * n[0]; k++)
+        list[at++] = half[k % 2][k / 2];
+}
+
 /* Two spans a group. They stand in the list in reverse order of the groups: nothing says that they
  * follow each other. */
 static void make_lists(void)
 {
+    uint64_t turns = 0;
+
     for (uint64_t g = 0; g < GROUPS; g++) {
         const uint64_t at = (GROUPS - 1 - g) * SOURCES;
         cloud.begin[g] = 2 * g;
         cloud.span[2 * g] = (sph_span){at, 0, CUT, CUT};
-        cloud.span[2 * g + 1] = (sph_span){at + CUT, CUT, SOURCES - CUT, SOURCES - CUT};
-        for (uint64_t k = 0; k < SOURCES; k++)
-            cloud.list[at + k] = (uint16_t)(k < CUT ? k : k - CUT);
+        cloud.span[2 * g + 1] = (sph_span){at + CUT, CUT, SOURCES - CUT, 0};
+        for (uint64_t k = 0; k < CUT; k++)
+            cloud.list[at + k] = (uint16_t)k;
+        make_turns(g, &cloud.span[2 * g + 1], cloud.list + at + CUT);
+        turns += (uint64_t)(SOURCES - CUT) - cloud.span[2 * g + 1].common;
     }
+    assert_true(turns > 0 || cloud.dim < 3); /* in one dimension all are near */
     cloud.begin[GROUPS] = 2 * GROUPS;
 }
 

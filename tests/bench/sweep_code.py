@@ -13,7 +13,8 @@ BAR = 0.05
 
 
 def functions(path, isa):
-    """(name, instructions: (address, text)) of every sweep for an instruction set, in the file's order."""
+    """(name, instructions: (address, text)) of every sweep for an instruction set, by name: compilers put
+    those of one object in an order of their own, the linker those of one name in the order of objects."""
     command = ["objdump", "-d", "--no-show-raw-insn", path]
     listing = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     found, inside = [], False
@@ -28,7 +29,7 @@ def functions(path, isa):
             # Padding is never executed.
             if not re.match(r"(data16 |cs |xchg +%ax,%ax|nop)", text):
                 found[-1][1].append((int(address.strip().rstrip(":"), 16), text))
-    return found
+    return sorted(found, key=lambda one: one[0])
 
 
 def pair_loop(code):

@@ -325,21 +325,15 @@ AVX2 static size_t avx2_near_leaves(const struct packed_box8 *boxes, size_t n,
     return dim == 2 ? avx2_leaves(boxes, n, t, 2, out) : avx2_leaves(boxes, n, t, 1, out);
 }
 
-/* Bits of the points that the lower half of the lanes sees, and the upper. */
-struct seen {
-    unsigned by[2];
-};
-
-AVX2_INLINE void avx2_found(struct found *out, uint32_t base, bool own, struct seen s)
+/* low, high: bits of the points that the lower half of the lanes sees, and the upper; of the group's own
+ * places both see what one sees. */
+AVX2_INLINE void avx2_found(struct found *out, uint32_t base, bool own, unsigned low, unsigned high)
 {
-    if (own) {
-        s.by[0] = s.by[1] = s.by[0] | s.by[1];
-    }
-    out->n[BY_BOTH] += avx2_put(out->source[BY_BOTH] + out->n[BY_BOTH], base, s.by[0] & s.by[1]);
-    out->n[BY_LOWER] +=
-        avx2_put(out->source[BY_LOWER] + out->n[BY_LOWER], base, s.by[0] & ~s.by[1]);
-    out->n[BY_UPPER] +=
-        avx2_put(out->source[BY_UPPER] + out->n[BY_UPPER], base, s.by[1] & ~s.by[0]);
+    unsigned common = own ? low | high : low & high;
+
+    out->n[BY_BOTH] += avx2_put(out->source[BY_BOTH] + out->n[BY_BOTH], base, common);
+    out->n[BY_LOWER] += avx2_put(out->source[BY_LOWER] + out->n[BY_LOWER], base, low & ~common);
+    out->n[BY_UPPER] += avx2_put(out->source[BY_UPPER] + out->n[BY_UPPER], base, high & ~common);
 }
 
 AVX2_INLINE unsigned avx2_verdict(const struct packed_leaf *p, const struct lanes *t, int uniform,
@@ -398,9 +392,9 @@ AVX2_INLINE void avx2_points(const struct packed_leaf *pack, const uint32_t *lea
 
         avx2_two(&pack[a], &pack[b], t, dim, uniform, 0, low);
         avx2_two(&pack[a], &pack[b], t, dim, uniform, 4, high);
-        avx2_found(out, leaf[a] * LEAF, leaf[a] == own, (struct seen){{low[0], high[0]}});
+        avx2_found(out, leaf[a] * LEAF, leaf[a] == own, low[0], high[0]);
         if (q + 1 < n) {
-            avx2_found(out, leaf[b] * LEAF, leaf[b] == own, (struct seen){{low[1], high[1]}});
+            avx2_found(out, leaf[b] * LEAF, leaf[b] == own, low[1], high[1]);
         }
     }
 }

@@ -92,7 +92,7 @@ AVX512_INLINE void near_points(const struct packed_leaf *pack, const uint32_t *l
     for (size_t k = 0; k < n; k += 2) {
         uint32_t a = chosen[k], b = chosen[k + 1 < n ? k + 1 : k];
         const struct packed_leaf *p = &pack[a], *q = &pack[b];
-        unsigned all = k + 1 < n ? 0xffff : 0xff, low, high; /* is there a second one? */
+        unsigned all = k + 1 < n ? 0xffff : 0xff, low, high, both_see; /* is there a second one? */
         __m512 x[3], s = both(p->s, q->s), r2 = both(p->r2, q->r2);
         __m512 least = _mm512_sub_ps(_mm512_setzero_ps(), s);
         __m512i index = _mm512_castsi256_si512(_mm256_set1_epi32((int)(leaf[a] * LEAF)));
@@ -109,15 +109,13 @@ AVX512_INLINE void near_points(const struct packed_leaf *pack, const uint32_t *l
         }
         low = all & sees(nearest_of(x, t, 0, dim, uniform), r2, least, uniform);
         high = all & sees(nearest_of(x, t, 4, dim, uniform), r2, least, uniform);
+        both_see = low & high;
         if (leaf[a] == own || leaf[b] == own) {
-            unsigned ours = leaf[a] == own ? 0xff : 0xff00, seen = (low | high) & ours;
-
-            low |= seen;
-            high |= seen;
+            both_see |= (low | high) & (leaf[a] == own ? 0xff : 0xff00);
         }
-        common = append(common, index, low & high);
-        lower = append(lower, index, low & ~high);
-        upper = append(upper, index, high & ~low);
+        common = append(common, index, both_see);
+        lower = append(lower, index, low & ~both_see);
+        upper = append(upper, index, high & ~both_see);
     }
     out->n[BY_BOTH] = (size_t)(common - out->source[BY_BOTH]);
     out->n[BY_LOWER] = (size_t)(lower - out->source[BY_LOWER]);

@@ -4,9 +4,9 @@
  * source that may lie within reach of any of them: r < reach_i, and for symmetric lists also r <
  * reach_j, both enlarged by the skin. A list stays right while 2 * largest displacement since it
  * was made + growth of reach_i <= skin * reach_i(then) for every particle. A list is without
- * repeats, and ascends in index of the source within each of its parts (sph_span.common): a source
- * that one half of the lanes alone can be near is for that half alone, if it finds a partner of the
- * other half. That saves a fifth of a sweep's steps. Sources up to 0.5 % beyond the enlarged reach may be in
+ * repeats. A source that one half of the lanes alone can be near is for that half alone, if it finds a
+ * partner of the other half (sph_span.common), which saves a fifth of a sweep's steps; what is for
+ * all ascends in index, and behind it those that found none. Sources up to 0.5 % beyond the enlarged reach may be in
  * it.
  *
  * Sort the sources by cell_order now and then: those out of all order are sorted aside, which

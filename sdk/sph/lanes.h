@@ -112,10 +112,16 @@ SPH_INLINE R SPH_OF_ISA(sph_halves_)(const T *a, const T *b)
 #endif
 }
 
+#if SPH_F32_WORDS
 SPH_INLINE B SPH_OF_ISA(sph_whole_halves_)(const INT *a, const INT *b)
 {
-    return (B)SPH_OF_ISA(sph_halves_)((const T *)(const void *)a, (const T *)(const void *)b);
+#ifdef SPH_AVX512_WORDS
+    return (B)_mm256_mask_broadcastd_epi32(_mm256_set1_epi32(*a), 0xf0, _mm_cvtsi32_si128(*b));
+#else
+    return (B)_mm256_blend_epi32(_mm256_set1_epi32(*a), _mm256_set1_epi32(*b), 0xf0);
+#endif
 }
+#endif
 #endif
 
 #ifdef SPH_FORM_LIST

@@ -22,7 +22,8 @@ THREADS = (1, 2)
 # Bars that are known to be missed, and what was measured. The faster the pair passes, the less of a step
 # they are: these have got faster, and the whole steps with them.
 KNOWN = {
-    ("wcsph-3d", "mixed", 2): "1.42 to 1.52",
+    ("wcsph-3d", "mixed", 2): "1.42 to 1.60",
+    ("wcsph-3d", "single", 1): "1.48 to 1.52",
     ("wcsph-3d", "single", 2): "1.50 to 1.57",
     ("wcsph-2d", "mixed", 1): "1.52 to 1.58",
     ("wcsph-2d", "mixed", 2): "1.56 to 1.64",

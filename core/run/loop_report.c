@@ -1,0 +1,193 @@
+/* run/loop_report.c -- what the loop tells at the end: the picture, summary.json, the table. */
+#include "base/text.h"
+#include "io/render.h"
+#include "io/snapshot.h"
+#include "io/summary.h"
+#include "run/loop_state.h"
+#include "run/report.h"
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+
+/* Particles in the picture: they may all have been removed, and the run is good all the same. */
+static uint64_t particles_drawn(const struct loop *l)
+{
+    const struct plan *plan = l->run.plan;
+    const char *only = l->scene->output.picture.array;
+    uint64_t n = 0;
+    for (size_t a = 0; a < plan->n_array; a++)
+        n += only && strcmp(only, plan->array[a].p.name) != 0 ? 0 : plan->array[a].p.n;
+    return n;
+}
+
+int loop_draw(struct loop *l, struct error *e)
+{
+    if (!l->scene->output.picture.wanted || l->snapshots == 0 || particles_drawn(l) == 0)
+        return 0;
+    char name[64];
+    snprintf(name, sizeof name, "snapshot_%04llu.vtkhdf", (unsigned long long)l->snapshots - 1);
+    char *path = output_path(l->out, name);
+    struct render_options o;
+    render_defaults(&o);
+    o.field = l->scene->output.picture.of;
+    o.array = l->scene->output.picture.array;
+    o.map = l->scene->output.picture.map;
+    if (l->scene->output.picture.range) {
+        o.min = l->scene->output.picture.min;
+        o.max = l->scene->output.picture.max;
+    }
+    char *png = text_format("%s.png", o.field ? o.field : "picture");
+    char *temporary = png ? output_begin(l->out, png) : NULL;
+    struct snapshot s = {0};
+    int status = path && temporary ? 0 : error_memory(e, "a picture", 1);
+    if (!status)
+        status = snapshot_read(&s, path, e);
+    if (!status)
+        status = render_png(temporary, &s, &o, e);
+    if (!status)
+        status = output_commit(l->out, temporary, png, e);
+    if (!status)
+        l->picture = output_path(l->out, png);
+    snapshot_free(&s);
+    free(path);
+    free(png);
+    free(temporary);
+    return status;
+}
+
+/* What the summary points into; filled from the run. */
+struct summary_parts {
+    const char **name;
+    uint64_t *count;
+    struct summary_pass *pass;
+    struct summary_plugin *plugin;
+    struct summary_error *error;
+    struct summary_probe *probe;
+    size_t n_error, n_probe;
+    cJSON *plan;
+};
+
+static void parts_free(struct summary_parts *q)
+{
+    free(q->name);
+    free(q->count);
+    free(q->pass);
+    free(q->plugin);
+    report_errors_free(q->error, q->n_error);
+    free(q->probe);
+    cJSON_Delete(q->plan);
+}
+
+static int parts_make(const struct loop *l, struct summary_parts *q, bool good, struct error *e)
+{
+    const struct plan *plan = l->run.plan;
+    q->name = calloc(plan->n_array + 1, sizeof *q->name);
+    q->count = calloc(plan->n_array + 1, sizeof *q->count);
+    q->pass = calloc(plan->n_pass + 1, sizeof *q->pass);
+    q->plugin = calloc(plan->registry->n_plugin + 1, sizeof *q->plugin);
+    q->plan = plan_json(plan);
+    if (!q->name || !q->count || !q->pass || !q->plugin || !q->plan)
+        return error_memory(e, "the summary", 1);
+    for (size_t a = 0; a < plan->n_array; a++) {
+        q->name[a] = plan->array[a].p.name;
+        q->count[a] = plan->array[a].p.n;
+    }
+    for (size_t i = 0; i < plan->n_pass; i++)
+        q->pass[i] = (struct summary_pass){plan->pass[i].name, plan->pass[i].seconds,
+                                           plan->pass[i].pairs, plan->pass[i].sweeps};
+    for (size_t i = 0; i < plan->registry->n_plugin; i++) {
+        const struct plugin *p = &plan->registry->plugin[i];
+        q->plugin[i] =
+            (struct summary_plugin){p->name, p->version, p->path, p->abi_major, p->abi_minor};
+    }
+    if (!good)
+        return 0;
+    return report_errors(&l->run, &q->error, &q->n_error, e) ||
+                   report_probes(&l->run, &q->probe, &q->n_probe, e)
+               ? -1
+               : 0;
+}
+
+/* Bytes for a particle, item by item. */
+static struct summary_memory memory_of(const struct loop *l)
+{
+    const struct plan *plan = l->run.plan;
+    const struct run_memory m = run_memory(&l->run);
+    const double n = (double)particles_total(plan);
+    struct summary_memory out = {0};
+    if (!(n > 0.0))
+        return out;
+    for (size_t a = 0; a < plan->n_array; a++) {
+        const struct particles *p = &plan->array[a].p;
+        for (size_t c = 0; c < p->n_column; c++) {
+            const struct column *k = &p->column[c];
+            out.columns += (double)(k->ncomp * (k->size + (k->low ? sizeof(float) : 0)) * p->n) / n;
+            out.mirrors += k->mirror ? (double)(k->ncomp * 4 * p->n) / n : 0.0;
+        }
+    }
+    out.lists = (double)m.lists / n;
+    out.places = (double)m.places / n;
+    out.ghosts = (double)m.ghosts / n;
+    out.search = (double)m.search / n;
+    return out;
+}
+
+int loop_summarise(struct loop *l, const char *status, const char *reason, struct error *e)
+{
+    const struct run *r = &l->run;
+    struct summary_parts q = {0};
+    if (parts_make(l, &q, strcmp(status, "failed") != 0, e)) {
+        parts_free(&q);
+        return -1;
+    }
+    struct rusage usage;
+    getrusage(RUSAGE_SELF, &usage);
+    struct summary s = {.status = status,
+                        .scene = l->options->scene_path,
+                        .title = l->scene->title,
+                        .reason = reason,
+                        .n_array = r->plan->n_array,
+                        .array_name = q.name,
+                        .array_n = q.count,
+                        .steps = r->step,
+                        .time = r->time,
+                        .error = q.error,
+                        .n_error = q.n_error,
+                        .probe = q.probe,
+                        .n_probe = q.n_probe,
+                        .energy_drift = l->energy_drift,
+                        .mass_drift =
+                            l->first.mass > 0.0 ? l->last.mass / l->first.mass - 1.0 : 0.0,
+                        .dim = r->plan->dim,
+                        .pass = q.pass,
+                        .n_pass = r->plan->n_pass,
+                        .plan = q.plan,
+                        .plugin = q.plugin,
+                        .n_plugin = r->plan->registry->n_plugin,
+                        .threads = r->threads,
+                        .ranks = 1,
+                        .picture = l->picture};
+    memcpy(s.momentum_drift, l->momentum_drift, sizeof s.momentum_drift);
+    memcpy(s.angular_drift, l->angular_drift, sizeof s.angular_drift);
+    s.cost.wall = omp_get_wtime() - l->started;
+    s.cost.loop = r->cost.loop;
+    s.cost.neighbour = r->cost.neighbour;
+    s.cost.integrate = r->cost.integrate;
+    s.cost.io = r->cost.io;
+    s.cost.particle_updates = r->cost.particle_updates;
+    s.cost.pairs = r->cost.pairs;
+    s.cost.list_builds = r->cost.list_builds;
+    for (size_t i = 0; i < r->plan->n_pass; i++)
+        s.cost.h_sweeps += r->plan->pass[i].max_sweeps ? r->plan->pass[i].sweeps : 0;
+    s.cost.peak_rss = (uint64_t)usage.ru_maxrss * 1024u;
+    s.cost.sorts = r->cost.sorts;
+    s.cost.memory = memory_of(l);
+    s.cost.bytes_per_particle = s.cost.memory.columns + s.cost.memory.mirrors +
+                                s.cost.memory.lists + s.cost.memory.places + s.cost.memory.ghosts;
+    int result = summary_write(&s, l->out, e);
+    if (!result && l->options->table)
+        summary_table(&s, stdout);
+    parts_free(&q);
+    return result;
+}

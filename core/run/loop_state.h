@@ -1,0 +1,49 @@
+/* run/loop_state.h -- what the files loop*.c share: the state of a run of the loop. loop.c steps;
+ * loop_files.c writes rows of the log and snapshots on the way; loop_report.c tells at the end. */
+#ifndef RUN_LOOP_STATE_H
+#define RUN_LOOP_STATE_H
+
+#include "io/log.h"
+#include "run/loop.h"
+
+/* A run of the loop. */
+struct loop {
+    struct run run;
+    const struct loop_options *options;
+    const struct output *out;
+    const struct scene *scene;
+    struct log log;
+    struct progress progress;
+    struct totals first, last;
+    double energy_drift, momentum_drift[3], angular_drift[3];
+    double begin, end, started;
+    double full; /* the last step's dt before it was cut to end on time */
+    uint64_t max_steps, snapshots, next_output;
+    double next_log;
+    bool momentum_free; /* nothing bounds the domain, so momentum is conserved */
+    char *picture, *scene_text;
+};
+
+static inline double totals_energy(const struct totals *t)
+{
+    return t->kinetic + t->internal + t->potential;
+}
+
+static inline uint64_t particles_total(const struct plan *plan)
+{
+    uint64_t n = 0;
+    for (size_t a = 0; a < plan->n_array; a++)
+        n += plan->array[a].p.n;
+    return n;
+}
+
+/* loop_files.c */
+int loop_log(struct loop *l, struct error *e);
+int loop_snapshot(struct loop *l, struct error *e);
+
+/* loop_report.c. The picture of the last snapshot, if the scene wants one. */
+int loop_draw(struct loop *l, struct error *e);
+/* summary.json, and the table. reason: of a failure, or NULL. */
+int loop_summarise(struct loop *l, const char *status, const char *reason, struct error *e);
+
+#endif

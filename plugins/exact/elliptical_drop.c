@@ -66,7 +66,7 @@ static void at(const void *of, struct exact_point *q)
 static sph_status run(const sph_batch *b)
 {
     const double radius = b->param[RADIUS], rate = b->param[RATE];
-    const double time = fabs(rate) * b->time;
+    const double time = fmin(fabs(rate) * fmax(0, b->time), 1e300);
     struct drop d;
 
     /* sinh(s) <= time <= sqrt(2) sinh(s), as sqrt(cosh(2 s)) is between cosh(s) and that. */

@@ -31,7 +31,7 @@ static sph_status init(const sph_host *host)
     return status;
 }
 
-SPH_PLUGIN("exact", "0.2", "BSD-3-Clause",
+SPH_PLUGIN("exact", "0.1", "BSD-3-Clause",
            "exact solutions: gases (shock tubes, implosion, explosion, waves, a vortex), liquids "
            "(viscous flows, waves, a drop, a tank), solids (plate, impact)",
            init, NULL)

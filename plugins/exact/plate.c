@@ -1,5 +1,5 @@
 /* plate.c -- a plate, clamped at x = 0 and free at x = length, swings in one of its modes.
- * L. D. Landau & E. M. Lifshitz, Theory of Elasticity (1970), sections 12, 25: thin, in plane strain.
+ * L. D. Landau & E. M. Lifshitz, Theory of Elasticity (1970), sections 12, 25: thin, plane strain.
  * With shear and rotary inertia: S. P. Timoshenko, Philos. Mag. 41 (1921) 744,
  * doi:10.1080/14786442108636264; its frequencies and modes in closed form: T. C. Huang, J. Appl.
  * Mech. 28 (1961) 579, doi:10.1115/1.3641787. The thin plate is what remains for q = r = 0:
@@ -51,7 +51,7 @@ struct plate {
     int bent;
 };
 
-/* alpha, beta and the turns for z = k L; 0: above the frequency from which on alpha is imaginary. */
+/* alpha, beta and the turns for z = k L; 0: alpha is imaginary there. */
 static int waves(struct mode *m, double z)
 {
     const double k4 = z * z * z * z, q = m->shear * k4, r = m->rotary * k4;
@@ -110,8 +110,8 @@ static double shape(const struct mode *m, double x, double *rotation)
 }
 
 /* cosh(alpha x) - cos(beta x) + ratio (sinh(alpha x) - turn_a / turn_b sin(beta x)), clamped at 0,
- * with a ratio that leaves no moment at 1. The sum of its growing parts, (1 + ratio) / 2 exp(alpha),
- * is taken before they cancel. */
+ * with a ratio that leaves no moment at 1. The sum of its growing parts, (1 + ratio) / 2
+ * exp(alpha), is taken before they cancel. */
 static void settle(struct mode *m, double z)
 {
     waves(m, z);

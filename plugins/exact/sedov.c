@@ -1,6 +1,6 @@
-/* sedov.c -- Sedov's explosion: energy set free at a plane, an axis or a point of cold, uniform gas.
- * L. I. Sedov, Similarity and Dimensional Methods in Mechanics (1959), chapter 4, in the notation of
- * J. R. Kamm & F. X. Timmes, LA-UR-07-2849 (2007), "standard case", with omega = 0.
+/* sedov.c -- Sedov's explosion: energy set free at a plane, an axis or a point of cold gas.
+ * L. I. Sedov, Similarity and Dimensional Methods in Mechanics (1959), chapter 4, in the notation
+ * of J. R. Kamm & F. X. Timmes, LA-UR-07-2849 (2007), "standard case", with omega = 0.
  *
  * Their parameter V is taken by y = x2 = b (c V - 1), which runs from 0 at the centre to 1 at the
  * shock. The other three are linear in z = 1 - y there, and all powers are taken by logarithms, so

@@ -1,4 +1,5 @@
-/* standing_wave.c -- a standing gravity wave of a viscous liquid of finite depth, of small amplitude.
+/* standing_wave.c -- a standing gravity wave of a viscous liquid, of finite depth and small
+ * amplitude.
  * H. Lamb, Hydrodynamics (1932), sections 228 (inviscid, finite depth), 348, 349 (viscous). The
  * decay and the frequency are those of Lamb's viscous dispersion; the velocity is that of potential
  * flow. What viscosity adds to it, a layer of vorticity of thickness sqrt(2 nu / omega) at the
@@ -13,7 +14,7 @@ static const sph_item item;
 static const sph_param params[] = {
     SPH_PARAM("amplitude", "m", "of the surface, were there no viscosity", .05, -1e300, 1e300),
     SPH_PARAM("depth", "m", "of the liquid at rest", 1, 1e-300, 1e300),
-    SPH_PARAM("wavelength", "m", "along x; a crest is at x = 0", 2, 1e-300, 1e300),
+    SPH_PARAM("wavelength", "m", "along x; a crest is at x = 0", 2, 1e-90, 1e90),
     SPH_PARAM("nu", "m^2/s", "kinematic viscosity", .004, 0, 1e300),
     SPH_PARAM("g", "m/s^2", "gravity, against the last axis", 1, 1e-300, 1e300),
     SPH_PARAM("rho0", "kg/m^d", "density", 1, 1e-300, 1e300),
@@ -39,8 +40,8 @@ struct wave {
     uint32_t up; /* the last axis */
 };
 
-/* Lamb's relation (n + 2 nu k^2)^2 + omega0^2 = 4 nu^2 k^3 sqrt(k^2 + n / nu), by Newton's iteration
- * from a root that is near. */
+/* Lamb's relation (n + 2 nu k^2)^2 + omega0^2 = 4 nu^2 k^3 sqrt(k^2 + n / nu), by Newton's
+ * iteration from a root that is near. */
 static double complex dispersion(const struct wave *w, double nu, double complex n)
 {
     const double k = w->k, k2 = k * k;

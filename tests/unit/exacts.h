@@ -1,5 +1,5 @@
-/* exacts.h -- for tests of the plugin "exact": its solutions at given places, their derivatives, and
- * the comparison with tables to the last digit that they print. */
+/* exacts.h -- for tests of the plugin "exact": its solutions at given places, their derivatives,
+ * and the comparison with tables to the last digit that they print. */
 #ifndef TEST_EXACTS_H
 #define TEST_EXACTS_H
 
@@ -53,7 +53,7 @@ double last_digit(double printed, int digits);
 /* Within one unit of the last of ten digits; where the table prints the rounding of a sum that
  * cancels, within `rounding`. */
 void same_digits(double got, double printed, double rounding);
-/* The same, of a function of a printed number: `low`, `got` and `high` are its values at half a unit
+/* The same, of a function of a printed number: `low`, `got` and `high` are its values half a unit
  * below that number, at it, and above it. */
 void same_digits_between(double low, double got, double high, double printed);
 

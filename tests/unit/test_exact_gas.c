@@ -1,5 +1,5 @@
-/* test_exact_gas.c -- the plugin "exact": explosion, sound wave and vortex against tables of another
- * program (tests/reference), the equations of motion and the conservation laws. */
+/* test_exact_gas.c -- the plugin "exact": explosion, sound wave and vortex against tables of
+ * another program (tests/reference), the equations of motion and the conservation laws. */
 #include "config.h"
 
 #include "exacts.h"
@@ -149,8 +149,8 @@ static void sums(const double *values, int dim, double t, double r2, double *mas
     fields_free(&f);
 }
 
-/* The energy is what was set free, the mass what the shock has swept; also where the exponents of the
- * solution have a pole (gamma = 2), and next to it. */
+/* The energy is what was set free, the mass what the shock has swept; also where the exponents of
+ * the solution have a pole (gamma = 2), and next to it. */
 static void sedov_keeps_mass_and_energy(void **state)
 {
     static const double gammas[] = {1.05, 1.4, 5. / 3, 2 - 1e-9, 2, 2 + 1e-9, 3, 6.5};

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -120,7 +121,8 @@ static void walls_obey_the_equations_of_motion(void **state)
             near(c.acceleration[0] - 4 * c.laplace_v[0], 0, 2e-3);
         }
     for (double y = -1.2; y < 1.3; y += .2) {
-        const double x[2] = {0, y}, inside = fabs(y) < 1;
+        const double x[2] = {0, y};
+        const bool inside = fabs(y) < 1;
         near(exacts_at("poiseuille", &poiseuille, 2, 0, x).v[0], 0, 0);
         near(exacts_at("poiseuille", &poiseuille, 2, 1e-9, x).v[0], inside ? 3e-9 : 0, 1e-20);
         near(exacts_at("poiseuille", &poiseuille, 2, 1e9, x).v[0],
@@ -187,8 +189,8 @@ static void standing_wave_of_the_table(void **state)
     free(table);
 }
 
-/* Linear equations of motion within, no flow through the bottom, p = p0 at the moving surface but for
- * the viscosity; a wave that starts as a crest is that, a quarter of a period later. */
+/* Linear equations of motion within, no flow through the bottom, p = p0 at the moving surface but
+ * for the viscosity; a wave that starts as a crest is that, a quarter of a period later. */
 static void standing_wave_obeys_the_equations_of_motion(void **state)
 {
     static const char *const names[] = {"amplitude", "depth", "wavelength", "nu",    "g",
@@ -288,7 +290,7 @@ static void elliptical_drop_of_the_table(void **state)
     free(table);
 }
 
-/* Euler's equations in the drop, p = 0 on and beyond its edge; forwards is backwards turned over. */
+/* Euler's equations in the drop, p = 0 on and beyond its edge; a rate below 0 is a quarter turn. */
 static void elliptical_drop_obeys_the_equations_of_motion(void **state)
 {
     static const char *const names[] = {"radius", "rate", "rho0", NULL};

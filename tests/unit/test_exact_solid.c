@@ -168,7 +168,7 @@ static void plate_with_shear(void **state)
                   "above the frequency");
 }
 
-/* v is the rate of d, at any time, and a bent plate is a straight one a quarter of a period later. */
+/* v is the rate of d, at any time, and a bent plate is a straight one a quarter period later. */
 static void plate_swings(void **state)
 {
     (void)state;
@@ -245,8 +245,8 @@ static void impact_of_the_battery(void **state)
     assert_true(fabs(a.rho - 3522.7) < .05);
 }
 
-/* What is between the far ends is what was there and what has come in: mass, momentum, energy; p and
- * v are the same on both sides of the contact; the mirror image is one. */
+/* What is between the far ends is what was there and what has come in: mass, momentum, energy; p
+ * and v are the same on both sides of the contact; the mirror image is one. */
 static void impact_conserves(void **state)
 {
     static const double cases[][8] = {

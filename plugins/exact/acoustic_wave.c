@@ -94,7 +94,7 @@ static sph_status run(const sph_batch *b)
     const double steepest = (w.gamma + 1) / 2 * w.c0 * w.k * fabs(w.amplitude) *
                             pow(1 + (w.gamma > 3 ? 1 : -1) * fabs(w.amplitude), (w.gamma - 3) / 2);
     if (steepest * w.t >= 1)
-        return exact_fail(b->host, SPH_E_NUMERIC, &item,
+        return exact_fail(b->host, SPH_E_NUMERIC,
                           "a simple wave of amplitude %g breaks about time %g; this is time %g",
                           w.amplitude, 1 / steepest, w.t);
     return exact_each(b, &item, simple, &w);

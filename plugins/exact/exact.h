@@ -46,9 +46,9 @@ typedef void (*exact_at)(const void *of, struct exact_point *q);
 /* Calls `at` for each place of the batch, and lays the fields down where the host asks for them. */
 sph_status exact_each(const sph_batch *b, const sph_item *item, exact_at at, const void *of);
 
-/* A message that begins with the item's name, then as printf. */
-__attribute__((format(printf, 4, 5))) sph_status
-exact_fail(const sph_host *host, sph_status status, const sph_item *item, const char *format, ...);
+/* host->fail with a sentence as by printf; the host says which solution it is of. */
+__attribute__((format(printf, 3, 4))) sph_status exact_fail(const sph_host *host, sph_status status,
+                                                            const char *format, ...);
 
 /* f and its derivative at x; 0: unknown. */
 typedef double (*exact_function)(const void *of, double x, double *derivative);

@@ -62,7 +62,7 @@ static sph_status create(const sph_host *host, const sph_config *c, uint32_t dim
 
     (void)dim;
     if (!(m.l.v > m.r.v))
-        return exact_fail(host, SPH_E_INVALID, &item,
+        return exact_fail(host, SPH_E_INVALID,
                           "the two do not meet: v_l, %g, must be above v_r, %g", m.l.v, m.r.v);
     m.v = exact_root(excess, &m, m.r.v, m.l.v);
     m.l.up = m.l.v - m.v;
@@ -70,7 +70,7 @@ static sph_status create(const sph_host *host, const sph_config *c, uint32_t dim
     m.l.shock = speed(&m.l, m.l.up);
     m.r.shock = speed(&m.r, m.r.up);
     if (!(m.l.shock > m.l.up && m.r.shock > m.r.up))
-        return exact_fail(host, SPH_E_INVALID, &item,
+        return exact_fail(host, SPH_E_INVALID,
                           "the shock would not run ahead of the contact: %s is too small for so "
                           "fast an impact",
                           m.l.shock > m.l.up ? "s_r" : "s_l");

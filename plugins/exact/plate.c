@@ -135,7 +135,7 @@ static sph_status create(const sph_host *host, const sph_config *c, uint32_t dim
 
     (void)dim;
     if (number != floor(number))
-        return exact_fail(host, SPH_E_INVALID, &item, "mode is a whole number, not %g", number);
+        return exact_fail(host, SPH_E_INVALID, "mode is a whole number, not %g", number);
     if (host->param(c, "theory") == 1) {
         /* D / (rho H) = E H^2 / (12 rho (1 - nu^2)), G = E / (2 (1 + nu)) */
         m.rotary = h * h / 12;
@@ -143,7 +143,7 @@ static sph_status create(const sph_host *host, const sph_config *c, uint32_t dim
     }
     const double z = find(&m, (int)number);
     if (z == 0)
-        return exact_fail(host, SPH_E_INVALID, &item,
+        return exact_fail(host, SPH_E_INVALID,
                           "mode %g is above the frequency up to which this solution holds, "
                           "sqrt(12 kappa G / rho) / thickness",
                           number);

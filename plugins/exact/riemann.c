@@ -146,7 +146,7 @@ static sph_status create(const sph_host *host, const sph_config *c, uint32_t dim
         status = solve(f);
     if (status != SPH_OK) {
         free(f);
-        return exact_fail(host, status, &item, "no pressure joins the two states");
+        return exact_fail(host, status, "no pressure joins the two states");
     }
     *state = f;
     return SPH_OK;

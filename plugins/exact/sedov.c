@@ -89,7 +89,7 @@ static sph_status create(const sph_host *host, const sph_config *c, uint32_t dim
         return SPH_E_NOMEM;
     if (!(d > 0)) {
         free(k);
-        return exact_fail(host, SPH_E_INVALID, &item,
+        return exact_fail(host, SPH_E_INVALID,
                           "with a gamma of %g a vacuum opens in the middle in 3D: it must be less "
                           "than 7",
                           gamma);
@@ -108,8 +108,7 @@ static sph_status create(const sph_host *host, const sph_config *c, uint32_t dim
     k->alpha = area[dim] * 8 / (s * (gamma + 1) * (j + 2) * (j + 2)) * energy_integral(k, 1. / 128);
     if (!(fabs(energy_integral(k, 1. / 64) / energy_integral(k, 1. / 128) - 1) < 1e-12)) {
         free(k);
-        return exact_fail(host, SPH_E_NUMERIC, &item, "no energy integral for a gamma of %g",
-                          gamma);
+        return exact_fail(host, SPH_E_NUMERIC, "no energy integral for a gamma of %g", gamma);
     }
     *state = k;
     return SPH_OK;

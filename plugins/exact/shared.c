@@ -47,7 +47,7 @@ sph_status exact_each(const sph_batch *b, const sph_item *item, exact_at at, con
     struct plane plane[3 * N_FIELDS];
 
     if (b->real != SPH_F64)
-        return exact_fail(b->host, SPH_E_UNKNOWN, item, "wants columns of doubles");
+        return exact_fail(b->host, SPH_E_UNKNOWN, "wants columns of doubles");
 
     const size_t n = planes_of(b, item, plane);
 
@@ -64,15 +64,13 @@ sph_status exact_each(const sph_batch *b, const sph_item *item, exact_at at, con
     return SPH_OK;
 }
 
-sph_status exact_fail(const sph_host *host, sph_status status, const sph_item *item,
-                      const char *format, ...)
+sph_status exact_fail(const sph_host *host, sph_status status, const char *format, ...)
 {
     char text[400];
-    const int n = snprintf(text, sizeof(text), "%s: ", item->name);
     va_list list;
 
     va_start(list, format);
-    vsnprintf(text + n, sizeof(text) - (size_t)n, format, list);
+    vsnprintf(text, sizeof(text), format, list);
     va_end(list);
     return host->fail(host, status, text);
 }

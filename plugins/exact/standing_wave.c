@@ -84,7 +84,7 @@ static sph_status create(const sph_host *host, const sph_config *c, uint32_t dim
     if (!(w->nu <= limit)) {
         const double nu = w->nu;
         free(w);
-        return exact_fail(host, SPH_E_INVALID, &item,
+        return exact_fail(host, SPH_E_INVALID,
                           "with a nu of %g the liquid creeps and does not swing: nu must not be "
                           "above %g",
                           nu, limit);

@@ -3,10 +3,9 @@
  * (run.look). So the pass is found while the state that it worked on is still good. Reads
  * columns, no more. */
 #include "base/clones.h"
-#include "run/run.h"
+#include "run/watch.h"
 #include <float.h>
 #include <math.h>
-#include <stdio.h>
 
 /* By the sum of what is 0 for a number and none for others. */
 CLONES bool any_not_finite(const double *value, size_t n)
@@ -78,18 +77,12 @@ static bool find_bad(const struct plan_array *a, int column, bool finite, size_t
 static int tell(const struct run *r, const char *who, const struct plan_array *a, int column,
                 size_t i, double value, struct error *e)
 {
-    const struct column *x = &a->p.column[a->position];
-    char place[128] = "";
-    size_t used = 0;
-    for (int c = 0; c < r->plan->dim && used < sizeof place; c++)
-        used += (size_t)snprintf(place + used, sizeof place - used, "%s%g", c ? ", " : "",
-                                 column_get(x, (uint32_t)c, i));
-    return error_set(e, EXIT_RUN,
-                     "%s made \"%s\" %s for particle %lld of array \"%s\" at x = (%s), step %llu, "
-                     "t = %g",
-                     who, a->p.column[column].name, isnan(value) ? "not a number" : "infinite",
-                     (long long)((const int64_t *)a->p.column[a->id].data)[i], a->p.name, place,
-                     (unsigned long long)r->step, r->time);
+    const char *name = a->p.column[column].name;
+    const struct sign s = {
+        .cause = WATCH_NOT_FINITE, .array = a, .particle = i, .by = who, .column = name};
+    return watch_fail(r, &s, e, "%s made \"%s\" %s for particle %lld of array \"%s\"", who, name,
+                      isnan(value) ? "not a number" : "infinite",
+                      (long long)((const int64_t *)a->p.column[a->id].data)[i], a->p.name);
 }
 
 static int check(const struct run *r, const struct pass *p, bool work, struct error *e)

@@ -1,6 +1,6 @@
 /* run/lists.c -- neighbour lists and ghosts of a run: made when they are no longer right, reused until then.
  * Everything is decided by displacements and counters, never by time, so that a run repeats itself. */
-#include "run/run.h"
+#include "run/watch.h"
 
 #include "neighbours/range.h"
 
@@ -279,9 +279,15 @@ static int make_list(struct run *r, size_t k, bool counted, struct error *e)
     const struct cloud dst = cloud_of(r, l->dst, l->frame, false);
     const struct cloud src = cloud_of(r, l->src, l->frame, true);
     struct group_list *list = &r->list[k];
+    const struct scene_watch *rule = &r->watch->scene[WATCH_NEIGHBOURS];
+    list->crowd.most = rule->action == WATCH_OFF ? 0 : (uint64_t)rule->limit;
+    list->crowd.stops = rule->action == WATCH_STOP;
     if (group_list_make(list, &dst, &src, l->reach == SPH_SYMMETRIC, r->skin, r->plan->manager,
-                        r->threads, e))
+                        r->threads, e) &&
+        !(list->crowd.n && list->crowd.stops))
         return error_prefix(e, "neighbours of \"%s\"", r->plan->array[l->dst].p.name);
+    if (watch_crowd(r, k, e))
+        return -1;
     if (counted && list->n_entry)
         list->true_share = ((double)group_list_count(list, &dst, &src, r->threads) -
                             (l->dst == l->src ? (double)dst.n : 0.0)) /
@@ -367,6 +373,7 @@ int run_lists(struct run *r, bool within, struct error *e)
             if (sort) {
                 r->builds_since_sort = 0;
                 r->cost.sorts++;
+                r->watch->sorted = true;
             }
         }
         if (!status)

@@ -1,5 +1,6 @@
 /* run/loop.c -- the step loop: choose dt, advance, log, snapshot; then the summary. */
 #include "run/loop_state.h"
+#include "run/watch.h"
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <omp.h>
@@ -67,10 +68,8 @@ static int choose_dt(struct loop *l, double *dt, struct error *e)
         full = r->step == 0 ? FIRST * full : fmin(full, GROWTH * l->full);
     l->full = full;
     double left = target(l) - r->time;
-    double tiny = 1e-12 * fmax(fabs(r->time), l->end - l->begin);
-    if (!(full > tiny * 1e-3))
-        return error_set(e, EXIT_RUN, "the time step collapsed to %g at step %llu, t = %g", full,
-                         (unsigned long long)r->step, r->time);
+    if (watch_time_step(r, full, l->end - l->begin, e))
+        return -1;
     *dt = left <= full * (1.0 + 1e-9) ? left : left < 2.0 * full ? 0.5 * left : full;
     return 0;
 }
@@ -123,8 +122,9 @@ static int after_step(struct loop *l, struct error *e)
     if (!isfinite(totals_energy(&l->last)))
         return error_set(e, EXIT_RUN, "the energy is no longer a number at step %llu, t = %g",
                          (unsigned long long)r->step, r->time);
-    if (logged && loop_log(l, e))
+    if (logged && (watch_energy(r, &l->first, &l->last, e) || loop_log(l, e)))
         return -1;
+    watch_step(r);
     while (by_time && l->next_log <= r->time)
         l->next_log += l->scene->output.log_every;
     if (!last && r->time >= target(l)) {
@@ -188,8 +188,10 @@ static int loop_begin(struct loop *l, struct plan *plan, struct error *e)
 static void keep_failed(struct loop *l, const struct error *e)
 {
     struct error ignored = {0};
-    if (l->run.step > 0 && loop_snapshot(l, &ignored))
+    if ((l->run.step > 0 || (l->run.watch && l->run.watch->failure.happened)) &&
+        loop_snapshot(l, &ignored))
         ignored.text[0] = '\0';
+    /* A CHECKPOINT of the failed state belongs here. */
     loop_summarise(l, "failed", e->text, &ignored);
 }
 

@@ -11,6 +11,7 @@
 #include <math.h>
 
 struct audit;
+struct watch;
 
 /* Sums over all real particles. */
 struct totals {
@@ -57,6 +58,7 @@ struct run {
     double proposed;      /* bound on the next dt, cfl not applied; INFINITY: none */
     struct run_cost cost;
     struct audit *audit; /* NULL: off */
+    struct watch *watch; /* watch.h */
     bool look;           /* all that passes write in this step is looked at: finite.c */
     bool suspect;        /* a rate may be no number */
     /* advance.c */

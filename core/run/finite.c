@@ -115,8 +115,7 @@ int finite_trace(const struct run *r, struct error *e)
     return 0;
 }
 
-/* The last pass of an evaluation that writes a column. */
-static const char *writer_of(const struct run *r, size_t array, int column)
+const char *finite_writer(const struct run *r, size_t array, int column)
 {
     const char *name = "the evaluation";
     for (size_t i = 0; i < r->plan->n_pass; i++)
@@ -142,7 +141,7 @@ int finite_rates(struct run *r, struct error *e)
                 continue;
             if (isnan(value) && finite_trace(r, e))
                 return -1;
-            return tell(r, writer_of(r, k, column), a, column, i, value, e);
+            return tell(r, finite_writer(r, k, column), a, column, i, value, e);
         }
     }
     return 0;

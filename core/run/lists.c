@@ -257,11 +257,14 @@ static int make_ghosts(struct run *r, struct error *e)
     for (size_t a = 0; a < r->plan->n_array; a++)
         margin = fmax(margin, r->h_high[a]);
     margin = margin * support(r->plan) * (1.0 + r->skin) + largest_overshoot(r);
+    if (watch_reach(r, margin, e))
+        return -1;
     for (size_t a = 0; a < r->plan->n_array; a++) {
         struct particles *p = &r->plan->array[a].p;
-        if (particles_resize(p, p->n, 0, e) ||
-            ghosts_make(&r->ghosts[a], &r->plan->scene->box, p, margin, e))
+        if (particles_resize(p, p->n, 0, e))
             return -1;
+        if (ghosts_make(&r->ghosts[a], &r->plan->scene->box, p, margin, e))
+            return watch_no_ghosts(r, e);
         for (size_t c = 0; c < p->n_column; c++)
             run_changed(r, a, (int)c);
         r->stale[a][r->plan->array[a].position] = false;
@@ -284,8 +287,10 @@ static int make_list(struct run *r, size_t k, bool counted, struct error *e)
     list->crowd.stops = rule->action == WATCH_STOP;
     if (group_list_make(list, &dst, &src, l->reach == SPH_SYMMETRIC, r->skin, r->plan->manager,
                         r->threads, e) &&
-        !(list->crowd.n && list->crowd.stops))
-        return error_prefix(e, "neighbours of \"%s\"", r->plan->array[l->dst].p.name);
+        !(list->crowd.n && list->crowd.stops)) {
+        error_prefix(e, "neighbours of \"%s\"", r->plan->array[l->dst].p.name);
+        return watch_no_lists(r, e);
+    }
     if (watch_crowd(r, k, e))
         return -1;
     if (counted && list->n_entry)

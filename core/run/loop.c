@@ -55,8 +55,8 @@ static int choose_dt(struct loop *l, double *dt, struct error *e)
     if (isnan(full) && finite_trace(r, e))
         return -1;
     if (isnan(full))
-        return error_set(e, EXIT_RUN, "the time step is no longer a number at step %llu, t = %g",
-                         (unsigned long long)r->step, r->time);
+        return watch_fail(r, &(struct sign){.cause = WATCH_NOT_FINITE}, e,
+                          "the time step is no longer a number");
     full = fmin(fmin(full, l->scene->time.dt_max), r->proposed);
     r->proposed = INFINITY;
     /* Later on nothing may be left that bounds it, as when the last particle has gone: it grows on. */
@@ -120,8 +120,8 @@ static int after_step(struct loop *l, struct error *e)
     if (!isfinite(totals_energy(&l->last)) && finite_trace(r, e))
         return -1;
     if (!isfinite(totals_energy(&l->last)))
-        return error_set(e, EXIT_RUN, "the energy is no longer a number at step %llu, t = %g",
-                         (unsigned long long)r->step, r->time);
+        return watch_fail(r, &(struct sign){.cause = WATCH_NOT_FINITE}, e,
+                          "the energy is no longer a number");
     if (logged && (watch_energy(r, &l->first, &l->last, e) || loop_log(l, e)))
         return -1;
     watch_step(r);

@@ -148,6 +148,9 @@ int finite_rates(struct run *r, struct error *e);
 /* When something else is no number: the first pass of which something is. 0: there is none. */
 int finite_trace(const struct run *r, struct error *e);
 
+/* finite.c: the last pass of an evaluation that writes a column. */
+const char *finite_writer(const struct run *r, size_t array, int column);
+
 /* finite.c: is one of n numbers not finite? */
 bool any_not_finite(const double *value, size_t n);
 bool any_not_finite4(const float *value, size_t n);

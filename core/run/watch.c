@@ -6,6 +6,7 @@
 #include "run/region.h"
 #include <float.h>
 #include <stdlib.h>
+#include <string.h>
 
 #define PIECE 512
 #define PARALLEL_FROM 20000
@@ -192,6 +193,20 @@ static const char *made_by(char *text, size_t size, const char *by)
     return text;
 }
 
+/* The same of a column; what the integrator made it of is told as well. */
+static const char *column_made_by(char *text, size_t size, const struct run *r, size_t array,
+                                  int column, const char *by)
+{
+    const struct plan_array *a = &r->plan->array[array];
+    made_by(text, size, by);
+    const size_t used = strlen(text);
+    for (size_t q = 0; strcmp(by, WATCH_INTEGRATOR) == 0 && q < a->n_rate; q++)
+        if (a->rate[q].property == column)
+            snprintf(text + used, size - used, " with \"%s\" of %s",
+                     a->p.column[a->rate[q].rate].name, finite_writer(r, array, a->rate[q].rate));
+    return text;
+}
+
 static int look_at(struct run *r, const struct watched *k, double least, const char *by,
                    struct error *e)
 {
@@ -207,11 +222,12 @@ static int look_at(struct run *r, const struct watched *k, double least, const c
             worst = column_get(c, 0, i);
             s.particle = i;
         }
-    char who[160];
+    char who[320];
+    column_made_by(who, sizeof who, r, k->array, k->column, by);
     return counted(r, &s, (uint64_t)bad)
                ? 0
-               : watch_fail(r, &s, e, "%s of particle %lld of \"%s\" became %g %s", c->name,
-                            id_of(a, s.particle), a->p.name, worst, made_by(who, sizeof who, by));
+               : watch_fail(r, &s, e, "%s of particle %lld of \"%s\" became %g %s,", c->name,
+                            id_of(a, s.particle), a->p.name, worst, who);
 }
 
 /* -- Before an evaluation ----------------------------------------------------------------------- */
@@ -374,6 +390,98 @@ int watch_crowd(struct run *r, size_t k, struct error *e)
         id_of(a, crowd->first), a->p.name, (unsigned long long)crowd->neighbours,
         r->plan->array[r->plan->list[k].src].p.name, r->watch->scene[WATCH_NEIGHBOURS].limit,
         made_by(who, sizeof who, s.by));
+}
+
+/* The particle with the largest smoothing length, or the first whose is no length. */
+static struct sign widest(const struct run *r)
+{
+    struct sign s = {.cause = WATCH_NEIGHBOURS};
+    double most = -1.0;
+    for (size_t k = 0; k < r->plan->n_array; k++) {
+        const struct plan_array *a = &r->plan->array[k];
+        for (size_t i = 0; i < a->p.n; i++) {
+            const double h = column_get(&a->p.column[a->smoothing], 0, i);
+            const bool none = !(h >= 0.0 && h <= DBL_MAX);
+            if (!none && !(h > most))
+                continue;
+            s.array = a;
+            s.particle = i;
+            s.by = writer_of_h(r, k);
+            s.cause = none ? WATCH_NOT_FINITE : WATCH_NEIGHBOURS;
+            if (none)
+                return s;
+            most = h;
+        }
+    }
+    return s;
+}
+
+static int tell_h(struct run *r, struct sign s, const char *what, struct error *e)
+{
+    char who[320];
+    const struct plan_array *a = s.array;
+    s.column = "h";
+    column_made_by(who, sizeof who, r, (size_t)(a - r->plan->array), a->smoothing, s.by);
+    return watch_fail(r, &s, e, "h of particle %lld of \"%s\" became %g %s%s,",
+                      id_of(a, s.particle), a->p.name,
+                      column_get(&a->p.column[a->smoothing], 0, s.particle), who, what);
+}
+
+int watch_no_lists(struct run *r, struct error *e)
+{
+    const struct sign s = widest(r);
+    return s.array && s.cause == WATCH_NOT_FINITE ? tell_h(r, s, "", e) : -1;
+}
+
+int watch_no_ghosts(struct run *r, struct error *e)
+{
+    const struct sign s = widest(r);
+    if (!s.array || !r->watch->evaluated)
+        return -1;
+    return tell_h(r, s, s.cause == WATCH_NEIGHBOURS ? ", as far as the domain is wide" : "", e);
+}
+
+/* Of one particle's neighbours those that are no ghosts. */
+static uint64_t real_neighbours(const struct run *r, const struct sign *s)
+{
+    const struct plan_array *a = s->array;
+    const double reach = column_get(&a->p.column[a->smoothing], 0, s->particle) *
+                         r->plan->kernel.support * r->plan->reach_scale;
+    uint64_t n = 0;
+    for (size_t k = 0; k < r->plan->n_array; k++) {
+        const struct plan_array *b = &r->plan->array[k];
+        if (!plan_pair(r->plan, (size_t)(a - r->plan->array), k))
+            continue;
+        for (size_t i = 0; i < b->p.n; i++) {
+            double r2 = 0.0;
+            for (uint32_t c = 0; c < b->p.column[b->position].ncomp; c++)
+                r2 += pow(column_get(&b->p.column[b->position], c, i) -
+                              column_get(&a->p.column[a->position], c, s->particle),
+                          2);
+            n += r2 < reach * reach && !(a == b && i == s->particle);
+        }
+    }
+    return n;
+}
+
+int watch_reach(struct run *r, double margin, struct error *e)
+{
+    const struct scene_watch *rule = &r->watch->scene[WATCH_NEIGHBOURS];
+    const struct box *box = &r->plan->scene->box;
+    bool wide = false;
+    for (int c = 0; c < r->plan->dim; c++)
+        wide = wide || (box->bounded && box->side[c][0] != SIDE_OPEN &&
+                        box->side[c][1] != SIDE_OPEN && 2.0 * margin > box->max[c] - box->min[c]);
+    if (!wide || rule->action != WATCH_STOP)
+        return 0;
+    const struct sign s = widest(r);
+    const uint64_t n = s.array && s.cause == WATCH_NEIGHBOURS ? real_neighbours(r, &s) : 0;
+    if (!((double)n > rule->limit))
+        return 0;
+    char what[96];
+    snprintf(what, sizeof what, ", which makes %llu neighbours and more, over %g,",
+             (unsigned long long)n, rule->limit);
+    return tell_h(r, s, what, e);
 }
 
 /* -- Steps and totals --------------------------------------------------------------------------- */

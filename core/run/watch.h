@@ -57,6 +57,13 @@ int watch_state(struct run *r, struct error *e);
 int watch_pass(struct run *r, const struct pass *p, struct error *e);
 /* After list k was made, or was not for its crowd. */
 int watch_crowd(struct run *r, size_t k, struct error *e);
+/* Lists, ghosts could not be made; if a smoothing length is to blame, that is said in place of what e
+ * says. Both return -1. */
+int watch_no_lists(struct run *r, struct error *e);
+int watch_no_ghosts(struct run *r, struct error *e);
+/* Before ghosts are made for a margin: where they would be many, that nobody has too many neighbours
+ * without them. */
+int watch_reach(struct run *r, double margin, struct error *e);
 /* The step that is to follow, before it is cut to end on time; span: of the whole run. */
 int watch_time_step(struct run *r, double dt, double span, struct error *e);
 /* Where totals are written. */

@@ -367,7 +367,9 @@ int run_lists(struct run *r, bool within, struct error *e)
     int status = 0;
     if (!r->lists_made || !holds(r, 0)) {
         bool sort = !within && (!r->lists_made || ++r->builds_since_sort >= BUILDS_PER_SORT);
-        status = widen_places(r, e);
+        status = watch_places(r, true, e);
+        if (!status)
+            status = widen_places(r, e);
         if (!within && !status) {
             for (size_t a = 0; a < r->plan->n_array; a++)
                 sides_wrap(&r->plan->scene->box, &r->plan->array[a].p);

@@ -303,12 +303,32 @@ static int look_for_escaped(struct run *r, size_t array, struct error *e)
     return look_where(r, a, e);
 }
 
+/* Whether lists are made anew when this array moves. */
+static bool has_lists(const struct plan *plan, size_t array)
+{
+    for (size_t k = 0; k < plan->n_list; k++)
+        if (plan->list[k].frame == 0 && (plan->list[k].dst == array || plan->list[k].src == array))
+            return true;
+    return false;
+}
+
+int watch_places(struct run *r, bool all, struct error *e)
+{
+    const struct scene_watch *rule = &r->watch->scene[WATCH_ESCAPED];
+    const bool always = rule->where || rule->action == WATCH_COUNT;
+    if (!r->watch->bounded)
+        set_bounds(r);
+    r->watch->bounded = true;
+    for (size_t a = 0; a < r->plan->n_array; a++)
+        if ((always || all == has_lists(r->plan, a)) && look_for_escaped(r, a, e))
+            return -1;
+    return 0;
+}
+
 int watch_state(struct run *r, struct error *e)
 {
     struct watch *w = r->watch;
     const bool first = !w->begun;
-    if (first)
-        set_bounds(r);
     for (size_t k = 0; k < w->n_column; k++) {
         struct watched *c = &w->column[k];
         const struct plan_array *a = &r->plan->array[c->array];
@@ -320,11 +340,9 @@ int watch_state(struct run *r, struct error *e)
             look_at(r, c, c->least, first ? WATCH_SCENE : WATCH_INTEGRATOR, e))
             return -1;
     }
-    for (size_t a = 0; a < r->plan->n_array; a++)
-        if (look_for_escaped(r, a, e))
-            return -1;
+    const int status = watch_places(r, false, e);
     w->begun = true;
-    return 0;
+    return status;
 }
 
 /* -- After a pass ------------------------------------------------------------------------------- */

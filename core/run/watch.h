@@ -39,6 +39,7 @@ struct watch {
     struct watched *column;
     size_t n_column;
     double low[3], high[3]; /* where a particle has escaped */
+    bool bounded;           /* bounds are set */
     bool begun, evaluated;  /* it was looked at; an evaluation was finished */
     bool sorted; /* particles were, in this evaluation: what is derived is not theirs ... */
     size_t done; /* ... unless one of so many passes has made it anew */
@@ -53,6 +54,10 @@ void watch_close(struct run *r);
 
 /* Before an evaluation, while places are as the integrator left them. */
 int watch_state(struct run *r, struct error *e);
+/* Places: with `all` of arrays that stand in lists, before those are made anew, and particles wrapped; as long as
+ * they hold nobody has gone anywhere. Without, of other arrays. What is counted, and a region, is looked
+ * at each time. */
+int watch_places(struct run *r, bool all, struct error *e);
 /* What a pass has just written. */
 int watch_pass(struct run *r, const struct pass *p, struct error *e);
 /* After list k was made, or was not for its crowd. */

@@ -69,6 +69,10 @@ whole = {
     "probes": [{"name": "a", "array": "fluid", "mean": "rho", "expected": 16},
                {"name": "b", "array": "fluid", "crossing": {"of": "rho", "shell": 0.1, "level": 1}}],
     "output": {"every": 0.1, "log": {"steps": 10}, "picture": {"field": "rho", "min": 0, "max": 1}},
+    "watch": {"not-finite": "stop", "density": "count", "internal-energy": False,
+              "escaped": {"action": "count", "margin": 1, "where": "r < 2"},
+              "time-step": {"below": 1e-9}, "energy": {"action": "stop", "above": 5, "scale": 2},
+              "neighbours": {"above": 300}},
 }
 for error in validator.iter_errors(whole):
     check(False, f"the whole scene: /{'/'.join(map(str, error.absolute_path))}: {error.message}")
@@ -93,6 +97,9 @@ wrong = [
     ("compare.0.exact", ABSENT), ("probes.0.min", "rho"), ("probes.0.mean", ABSENT),
     ("probes.1.crossing.shell", 0), ("output.every", 0), ("output.log.every", 1),
     ("output.picture.max", ABSENT), ("output.picture.map", "blue"), ("output.checkpiont", {}),
+    ("watch", "off"), ("watch.density", "ignore"), ("watch.densty", "stop"), ("watch.not-finite", "off"),
+    ("watch.escaped.margin", 0), ("watch.escaped.wher", "x"), ("watch.time-step.below", 1),
+    ("watch.energy.action", "halt"), ("watch.neighbours.above", "many"),
 ]
 for path, value in wrong:
     scene = copy.deepcopy(whole)
@@ -133,6 +140,10 @@ def definition(name, *way):
     return keys("definitions", name, *way)
 
 
+def watch_keys(cause):
+    return keys("properties", "watch", "anyOf", 1, "properties", cause, "anyOf", 1)
+
+
 fills = definition("lattice") | definition("glass") | definition("file")
 expected = {
     "scene.c:compile:keys": keys(),
@@ -160,6 +171,12 @@ expected = {
     "scene_output.c:compile_log:keys": definition("output", "properties", "log"),
     "scene_output.c:compile_picture:keys": definition("picture"),
     "scene_output.c:scene_output:keys": definition("output"),
+    "scene_watch.c::watch_keys": keys("properties", "watch", "anyOf", 1),
+    "scene_watch.c:check_keys:keys": definition("watch-as"),
+    "scene_watch.c:check_keys:escaped_keys": watch_keys("escaped"),
+    "scene_watch.c:check_keys:time_step_keys": watch_keys("time-step"),
+    "scene_watch.c:check_keys:energy_keys": watch_keys("energy"),
+    "scene_watch.c:check_keys:neighbours_keys": watch_keys("neighbours"),
     "shape.c:compile_box:keys": definition("shape", "properties", "box"),
     "shape.c:compile_sphere:keys": definition("shape", "properties", "sphere"),
     "shape.c:compile_cylinder:keys": definition("shape", "properties", "cylinder"),

@@ -85,7 +85,25 @@ static int tell(const struct run *r, const char *who, const struct plan_array *a
                       (long long)((const int64_t *)a->p.column[a->id].data)[i], a->p.name);
 }
 
-static int check(const struct run *r, const struct pass *p, bool work, struct error *e)
+/* A pass that goes on with a sum hides nothing of what earlier ones put into it. */
+static bool goes_on(const struct pass *p, int column)
+{
+    for (uint32_t k = 0; k < p->use.item->props.count; k++)
+        if (p->dst.column[k] == column && p->continues[k])
+            return true;
+    return false;
+}
+
+bool finite_finished(const struct run *r, const struct pass *p, size_t array, int column, bool sums)
+{
+    for (const struct pass *q = p + 1; q < r->plan->pass + r->plan->n_pass; q++)
+        if (q->moment == p->moment && pass_writes(q, array, column) &&
+            !(sums && goes_on(q, column)))
+            return false;
+    return true;
+}
+
+static int check(const struct run *r, const struct pass *p, bool trace, struct error *e)
 {
     const struct plan_array *a = &r->plan->array[p->dst.array];
     for (uint32_t k = 0; k < p->use.item->props.count; k++) {
@@ -93,7 +111,9 @@ static int check(const struct run *r, const struct pass *p, bool work, struct er
         const int column = p->dst.column[k];
         size_t i = 0;
         double value = 0.0;
-        if (column >= 0 && (work || !(prop->access & SPH_WORK)) &&
+        if (column >= 0 &&
+            (trace ? finite_finished(r, p, p->dst.array, column, true)
+                   : !(prop->access & SPH_WORK)) &&
             pass_writes(p, p->dst.array, column) && find_bad(a, column, false, &i, &value))
             return tell(r, p->name, a, column, i, value, e);
     }

@@ -114,7 +114,7 @@ static int parts_make(const struct loop *l, struct summary_parts *q, bool good, 
 
 static struct summary_watch watch_of(enum watch_cause cause, const struct failure *f, uint64_t n)
 {
-    struct summary_watch w = {.cause = watch_name[cause],
+    struct summary_watch w = {.cause = watch_keys[cause],
                               .n = n,
                               .happened = f->happened,
                               .array = f->array ? f->array->p.name : NULL,
@@ -170,7 +170,7 @@ int loop_summarise(struct loop *l, const char *status, const char *reason, struc
         parts_free(&q);
         return -1;
     }
-    if (r->watch)
+    if (reason && r->watch)
         watch_step(&l->run); /* one that was broken off counts as well */
     watch_make(l, &q);
     struct rusage usage;

@@ -151,6 +151,11 @@ int finite_trace(const struct run *r, struct error *e);
 /* finite.c: the last pass of an evaluation that writes a column. */
 const char *finite_writer(const struct run *r, size_t array, int column);
 
+/* finite.c: no later pass of the moment writes the column as well: what stands there stays;
+ * with `sums` one may add to it. */
+bool finite_finished(const struct run *r, const struct pass *p, size_t array, int column,
+                     bool sums);
+
 /* finite.c: is one of n numbers not finite? */
 bool any_not_finite(const double *value, size_t n);
 bool any_not_finite4(const float *value, size_t n);

@@ -347,15 +347,6 @@ int watch_state(struct run *r, struct error *e)
 
 /* -- After a pass ------------------------------------------------------------------------------- */
 
-/* Does a later pass of the moment write it as well? Then what stands there is not finished. */
-static bool is_last_writer(const struct run *r, const struct pass *p, size_t array, int column)
-{
-    for (const struct pass *q = p + 1; q < r->plan->pass + r->plan->n_pass; q++)
-        if (q->moment == p->moment && pass_writes(q, array, column))
-            return false;
-    return true;
-}
-
 /* A sum over other arrays alone is rightly 0 far from them. */
 static bool sums_over_others(const struct pass *p, size_t array)
 {
@@ -371,7 +362,7 @@ int watch_pass(struct run *r, const struct pass *p, struct error *e)
         const struct watched *c = &r->watch->column[k];
         const size_t array = p->dst.array;
         if (c->array == array && !c->may_be && pass_writes(p, array, c->column) &&
-            is_last_writer(r, p, array, c->column) &&
+            finite_finished(r, p, array, c->column, false) &&
             look_at(r, c, sums_over_others(p, array) ? 0.0 : c->least, p->name, e))
             return -1;
     }

@@ -136,7 +136,7 @@ enum watch_cause {
     WATCH_NEIGHBOURS,
     WATCH_CAUSES
 };
-extern const char *const watch_name[WATCH_CAUSES];
+extern const char *const watch_keys[WATCH_CAUSES];
 enum watch_action { WATCH_STOP, WATCH_COUNT, WATCH_OFF };
 struct scene_watch {
     enum watch_action action;

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-const char *const watch_name[WATCH_CAUSES] = {"not-finite", "density", "internal-energy", "escaped",
-                                              "time-step",  "energy",  "neighbours"};
+const char *const watch_keys[] = {"not-finite", "density", "internal-energy", "escaped",
+                                  "time-step",  "energy",  "neighbours"};
 
 static const char *const actions[] = {"stop", "count",
                                       "off"}; /* in the order of enum watch_action */
@@ -41,18 +41,32 @@ static int compile_action(struct scene *s, const cJSON *object, const char *key,
     return 0;
 }
 
+/* What an object may hold for a cause. */
+static int check_keys(struct scene *s, const cJSON *node, size_t cause, struct error *e)
+{
+    static const char *const keys[] = {"action"};
+    static const char *const escaped_keys[] = {"action", "margin", "where"};
+    static const char *const time_step_keys[] = {"action", "below"};
+    static const char *const energy_keys[] = {"action", "above", "scale"};
+    static const char *const neighbours_keys[] = {"action", "above"};
+    switch ((enum watch_cause)cause) {
+    case WATCH_ESCAPED:
+        return json_keys(s->doc, node, escaped_keys, COUNT(escaped_keys), e);
+    case WATCH_TIME_STEP:
+        return json_keys(s->doc, node, time_step_keys, COUNT(time_step_keys), e);
+    case WATCH_ENERGY:
+        return json_keys(s->doc, node, energy_keys, COUNT(energy_keys), e);
+    case WATCH_NEIGHBOURS:
+        return json_keys(s->doc, node, neighbours_keys, COUNT(neighbours_keys), e);
+    default:
+        return json_keys(s->doc, node, keys, COUNT(keys), e);
+    }
+}
+
 static int compile_details(struct scene *s, const cJSON *node, size_t cause, struct error *e)
 {
     struct scene_watch *w = &s->watch[cause];
-    const char *keys[3] = {"action"};
-    size_t n = 1;
-    if (limit_of[cause].key)
-        keys[n++] = limit_of[cause].key;
-    if (cause == WATCH_ESCAPED)
-        keys[n++] = "where";
-    if (cause == WATCH_ENERGY)
-        keys[n++] = "scale";
-    if (json_keys(s->doc, node, keys, n, e) < 0 || compile_action(s, node, "action", w, e) < 0)
+    if (check_keys(s, node, cause, e) < 0 || compile_action(s, node, "action", w, e) < 0)
         return -1;
     if (limit_of[cause].key && json_positive(s->doc, node, limit_of[cause].key, false,
                                              limit_of[cause].what, &w->limit, e) < 0)
@@ -72,7 +86,7 @@ static int compile_details(struct scene *s, const cJSON *node, size_t cause, str
 
 static int compile_cause(struct scene *s, const cJSON *node, size_t cause, struct error *e)
 {
-    const cJSON *of = json_get(node, watch_name[cause]);
+    const cJSON *of = json_get(node, watch_keys[cause]);
     struct scene_watch *w = &s->watch[cause];
     char brief[JSON_BRIEF];
     if (!of)
@@ -83,7 +97,7 @@ static int compile_cause(struct scene *s, const cJSON *node, size_t cause, struc
         return document_fail(s->doc, of, e,
                              "%s is not an action; give \"stop\", \"count\", \"off\" or an object",
                              json_brief(of, brief));
-    else if (cJSON_IsString(of) ? compile_action(s, node, watch_name[cause], w, e) < 0
+    else if (cJSON_IsString(of) ? compile_action(s, node, watch_keys[cause], w, e) < 0
                                 : compile_details(s, of, cause, e) < 0)
         return -1;
     if (cause == WATCH_NOT_FINITE && w->action != WATCH_STOP)
@@ -103,7 +117,7 @@ int scene_watches(struct scene *s, const cJSON *node, struct error *e)
             s->watch[c].action = c == WATCH_NOT_FINITE ? WATCH_STOP : WATCH_OFF;
         return 0;
     }
-    if (json_keys(s->doc, node, watch_name, WATCH_CAUSES, e) < 0)
+    if (json_keys(s->doc, node, watch_keys, WATCH_CAUSES, e) < 0)
         return -1;
     for (size_t c = 0; c < WATCH_CAUSES; c++)
         if (compile_cause(s, node, c, e) < 0)

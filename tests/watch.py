@@ -86,13 +86,15 @@ for name, options in (("each step looked at", ()), ("rates alone", ("--set", "ou
 
 # -- Density ----------------------------------------------------------------------------------------
 
-failure, state, result = fails("density", scene_of("density"), "density",
-                               said=("by the integrator with \"drho\" of wcsph-rates(drop)",))
-worst = int(state["rho"].argmin())
-expect("density: particle", where(state, failure) == worst and state["rho"][worst] <= 0, (worst, failure))
-expect("density: value", f"became {state['rho'][worst]:g} by" in result.stderr, result.stderr)
-expect("density: pass", failure["pass"] == "integrator", failure)
-expect("density: others", f"like {(state['rho'] <= 0).sum() - 1} others" in result.stderr, result.stderr)
+for name, options in (("double", ()), ("mixed", ("--precision", "mixed")), ("single", ("--precision", "single")),
+                      ("no row of the log", ("--set", "output.log.steps=1000"))):
+    failure, state, result = fails(f"density, {name}", scene_of("density"), "density", *options,
+                                   said=("by the integrator with \"drho\" of wcsph-rates(drop)",))
+    worst = int(state["rho"].argmin())
+    expect(f"density, {name}: particle", state["rho"][where(state, failure)] == state["rho"][worst] <= 0, failure)
+    expect(f"density, {name}: value", f"became {state['rho'][worst]:g} by" in result.stderr, result.stderr)
+    expect(f"density, {name}: pass", failure["pass"] == "integrator", failure)
+    expect(f"density, {name}: others", f"like {(state['rho'] <= 0).sum() - 1} others" in result.stderr, result.stderr)
 expect("density: the state before was well", (Snapshot(result.snapshots()[0])["rho"] > 0).all())
 
 # ... that a pass makes: one of the scheme's, followed by one of the scene's.

@@ -160,6 +160,8 @@ static int steps(struct loop *l, struct error *e)
         /* The last evaluation was in mid-step: bring what is derived up to the end. */
         if (run_passes(r, MOMENT_EVALUATE, e))
             return -1;
+    } else if (watch_state(r, e)) {
+        return -1;
     }
     r->cost.loop = omp_get_wtime() - begin - (r->cost.io - io);
     return loop_snapshot(l, e);

@@ -134,9 +134,9 @@ int watch_fail(const struct run *r, const struct sign *s, struct error *e, const
         add(&t, " at x = (");
         for (uint32_t c = 0; c < x->ncomp; c++)
             add(&t, "%s%g", c ? ", " : "", column_get(x, c, s->particle));
-        add(&t, ")");
+        add(&t, "),");
     }
-    add(&t, ", step %llu, t = %g", (unsigned long long)r->step, r->time);
+    add(&t, "%s step %llu, t = %g", s->array ? "" : " at", (unsigned long long)r->step, r->time);
     if (s->others)
         add(&t, ", like %zu others", s->others);
     if (s->array)

@@ -64,15 +64,15 @@ whole = {
         {"operation": "summation", "function": "f", "of": "rho", "to": ["fluid"], "at": "finish"},
         {"operation": "assignment", "of": "label", "expression": "x > 0", "after": "g"}]},
     "kernel": {"name": "k"}, "limits": {"particles": 1000}, "neighbours": {"skin": 0.2},
+    "watch": {"not-finite": "stop", "density": "count", "internal-energy": False,
+              "escaped": {"action": "count", "margin": 1, "where": "r < 2"},
+              "time-step": {"below": 1e-9}, "energy": {"action": "stop", "above": 5, "scale": 2},
+              "neighbours": {"above": 300}},
     "time": {"integrator": "kdk", "begin": 0, "end": 2, "cfl": 0.3, "dt_max": 0.1, "steps": 9},
     "compare": [{"array": "fluid", "exact": "e", "where": "r < 1", "fields": ["rho"], "gamma": 1.4}],
     "probes": [{"name": "a", "array": "fluid", "mean": "rho", "expected": 16},
                {"name": "b", "array": "fluid", "crossing": {"of": "rho", "shell": 0.1, "level": 1}}],
     "output": {"every": 0.1, "log": {"steps": 10}, "picture": {"field": "rho", "min": 0, "max": 1}},
-    "watch": {"not-finite": "stop", "density": "count", "internal-energy": False,
-              "escaped": {"action": "count", "margin": 1, "where": "r < 2"},
-              "time-step": {"below": 1e-9}, "energy": {"action": "stop", "above": 5, "scale": 2},
-              "neighbours": {"above": 300}},
 }
 for error in validator.iter_errors(whole):
     check(False, f"the whole scene: /{'/'.join(map(str, error.absolute_path))}: {error.message}")
@@ -82,6 +82,9 @@ wrong = [
     ("titel", "T"), ("dimensions", ABSENT), ("dimensions", 4), ("dimensions", "2"),
     ("units", "metric"), ("particles", {}), ("particles", ABSENT), ("scheme", ABSENT), ("time", {}),
     ("time.end", "soon"), ("time.ende", 1), ("time.cfl", 0), ("domain.min", 0),
+    ("watch", "off"), ("watch.density", "ignore"), ("watch.densty", "stop"), ("watch.not-finite", "off"),
+    ("watch.escaped.margin", 0), ("watch.escaped.wher", "x"), ("watch.time-step.below", 1),
+    ("watch.energy.action", "halt"), ("watch.neighbours.above", "many"),
     ("domain.sides.x", "perodic"), ("domain.sides.y", ["open"]), ("domain.sides.w", "open"),
     ("materials.gas.eos", {"gamma": 1.4}), ("materials.gas.eso", 1), ("particles.fluid.fill", ABSENT),
     ("particles.fluid.fill", []), ("particles.fluid.fill.0.spacing", -0.1),
@@ -97,9 +100,6 @@ wrong = [
     ("compare.0.exact", ABSENT), ("probes.0.min", "rho"), ("probes.0.mean", ABSENT),
     ("probes.1.crossing.shell", 0), ("output.every", 0), ("output.log.every", 1),
     ("output.picture.max", ABSENT), ("output.picture.map", "blue"), ("output.checkpiont", {}),
-    ("watch", "off"), ("watch.density", "ignore"), ("watch.densty", "stop"), ("watch.not-finite", "off"),
-    ("watch.escaped.margin", 0), ("watch.escaped.wher", "x"), ("watch.time-step.below", 1),
-    ("watch.energy.action", "halt"), ("watch.neighbours.above", "many"),
 ]
 for path, value in wrong:
     scene = copy.deepcopy(whole)

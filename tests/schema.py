@@ -64,6 +64,10 @@ whole = {
         {"operation": "summation", "function": "f", "of": "rho", "to": ["fluid"], "at": "finish"},
         {"operation": "assignment", "of": "label", "expression": "x > 0", "after": "g"}]},
     "kernel": {"name": "k"}, "limits": {"particles": 1000}, "neighbours": {"skin": 0.2},
+    "watch": {"not-finite": "stop", "density": "count", "internal-energy": False,
+              "escaped": {"action": "count", "margin": 1, "where": "r < 2"},
+              "time-step": {"below": 1e-9}, "energy": {"action": "stop", "above": 5, "scale": 2},
+              "neighbours": {"above": 300}},
     "time": {"integrator": "kdk", "begin": 0, "end": 2, "cfl": 0.3, "dt_max": 0.1, "steps": 9},
     "compare": [{"array": "fluid", "exact": "e", "where": "r < 1", "fields": ["rho"], "gamma": 1.4}],
     "probes": [{"name": "a", "array": "fluid", "mean": "rho", "expected": 16},
@@ -78,6 +82,9 @@ wrong = [
     ("titel", "T"), ("dimensions", ABSENT), ("dimensions", 4), ("dimensions", "2"),
     ("units", "metric"), ("particles", {}), ("particles", ABSENT), ("scheme", ABSENT), ("time", {}),
     ("time.end", "soon"), ("time.ende", 1), ("time.cfl", 0), ("domain.min", 0),
+    ("watch", "off"), ("watch.density", "ignore"), ("watch.densty", "stop"), ("watch.not-finite", "off"),
+    ("watch.escaped.margin", 0), ("watch.escaped.wher", "x"), ("watch.time-step.below", 1),
+    ("watch.energy.action", "halt"), ("watch.neighbours.above", "many"),
     ("domain.sides.x", "perodic"), ("domain.sides.y", ["open"]), ("domain.sides.w", "open"),
     ("materials.gas.eos", {"gamma": 1.4}), ("materials.gas.eso", 1), ("particles.fluid.fill", ABSENT),
     ("particles.fluid.fill", []), ("particles.fluid.fill.0.spacing", -0.1),
@@ -133,6 +140,10 @@ def definition(name, *way):
     return keys("definitions", name, *way)
 
 
+def watch_keys(cause):
+    return keys("properties", "watch", "anyOf", 1, "properties", cause, "anyOf", 1)
+
+
 fills = definition("lattice") | definition("glass") | definition("file")
 expected = {
     "scene.c:compile:keys": keys(),
@@ -154,12 +165,18 @@ expected = {
     "scene_scheme.c:compile_verb:keys": {"delete"},
     "scene_scheme.c:scene_scheme:keys": definition("scheme", "anyOf", 1),
     "scene_output.c:scene_time:keys": definition("time"),
-    "scene_output.c:scene_compares:keys": definition("compare"),
-    "scene_output.c:compile_crossing:keys": definition("probe", "properties", "crossing"),
-    "scene_output.c:compile_probe:keys": definition("probe"),
+    "scene_measure.c:scene_compares:keys": definition("compare"),
+    "scene_measure.c:compile_crossing:keys": definition("probe", "properties", "crossing"),
+    "scene_measure.c:compile_probe:keys": definition("probe"),
     "scene_output.c:compile_log:keys": definition("output", "properties", "log"),
     "scene_output.c:compile_picture:keys": definition("picture"),
     "scene_output.c:scene_output:keys": definition("output"),
+    "scene_watch.c::watch_keys": keys("properties", "watch", "anyOf", 1),
+    "scene_watch.c:check_keys:keys": definition("watch-as"),
+    "scene_watch.c:check_keys:escaped_keys": watch_keys("escaped"),
+    "scene_watch.c:check_keys:time_step_keys": watch_keys("time-step"),
+    "scene_watch.c:check_keys:energy_keys": watch_keys("energy"),
+    "scene_watch.c:check_keys:neighbours_keys": watch_keys("neighbours"),
     "shape.c:compile_box:keys": definition("shape", "properties", "box"),
     "shape.c:compile_sphere:keys": definition("shape", "properties", "sphere"),
     "shape.c:compile_cylinder:keys": definition("shape", "properties", "cylinder"),

@@ -167,6 +167,21 @@ static int add_rates(struct plan *plan, const sph_list *rates, size_t array, str
     return 0;
 }
 
+/* Without a scheme nobody says what moves the position: where a function advances the velocity, that does. */
+static int add_motion(struct plan *plan, struct error *e)
+{
+    const sph_rate motion = SPH_RATE("x", "v", SPH_DRIFT);
+    for (size_t i = 0; i < plan->n_array; i++) {
+        struct plan_array *a = &plan->array[i];
+        bool kicked = false;
+        for (size_t k = 0; k < a->n_rate; k++)
+            kicked = kicked || strcmp(a->p.column[a->rate[k].property].name, motion.rate) == 0;
+        if (kicked && a->velocity < 0 && add_rate(plan, a, &motion, e))
+            return -1;
+    }
+    return 0;
+}
+
 /* "a.0": what the integrator keeps of a column, held as that is; its index, or -1. */
 static int add_saved(struct plan_array *a, int column, struct error *e)
 {
@@ -252,6 +267,8 @@ int columns_finish(struct plan *plan, struct error *e)
     for (size_t a = 0; plan->scheme && a < plan->n_array; a++)
         if (add_rates(plan, &plan->scheme->rates, a, e))
             return -1;
+    if (!plan->scheme && add_motion(plan, e))
+        return -1;
     for (size_t i = 0; i < plan->n_pass; i++)
         if (find_continued(plan, i, e))
             return -1;

@@ -128,7 +128,7 @@ static int add_rate(struct plan *plan, struct plan_array *a, const sph_rate *dec
     if (!bigger)
         return error_memory(e, "rates", sizeof *bigger);
     a->rate = bigger;
-    a->rate[a->n_rate - 1] = (struct rate){y, r, declared->kind, -1, -1, NO_PASS, false};
+    a->rate[a->n_rate - 1] = (struct rate){y, r, declared->kind, -1, {y, -1, -1}, NO_PASS, false};
     if (y == a->position)
         a->velocity = r;
     return 0;
@@ -182,11 +182,11 @@ static int add_motion(struct plan *plan, struct error *e)
     return 0;
 }
 
-/* "a.0": what the integrator keeps of a column, held as that is; its index, or -1. */
-static int add_saved(struct plan_array *a, int column, struct error *e)
+/* "a.0", "a.1": what the integrator keeps of a column, held as that is; its index, or -1. */
+static int add_saved(struct plan_array *a, int column, enum slot slot, struct error *e)
 {
     const struct column *of = &a->p.column[column];
-    char *name = text_format("%s.0", of->name);
+    char *name = text_format("%s.%d", of->name, (int)slot - SLOT_0);
     if (!name)
         return error_memory(e, "a column", 1);
     int c = particles_add(&a->p, name, of->unit, "kept by the integrator", of->type, e);
@@ -207,10 +207,12 @@ static int add_integrator_columns(struct plan *plan, struct error *e)
             struct rate *r = &a->rate[k];
             /* A rate outlives its evaluation (it starts the next step), so a sort must carry it. */
             a->p.column[r->rate].state = a->p.column[r->property].state = true;
-            if (plan->integrator->saves_state && (r->kept = add_saved(a, r->property, e)) < 0)
-                return -1;
-            if (plan->integrator->saves_rates && r->kind == SPH_KICK && r->closed == NO_PASS &&
-                (r->saved = add_saved(a, r->rate, e)) < 0)
+            for (enum slot s = SLOT_0; s < SLOT_COUNT; s++)
+                if (integrator_keeps(plan->integrator, r->kind, s) &&
+                    (r->kept[s] = add_saved(a, r->property, s, e)) < 0)
+                    return -1;
+            if (integrator_saves_rates(plan->integrator) && r->kind == SPH_KICK &&
+                r->closed == NO_PASS && (r->saved = add_saved(a, r->rate, SLOT_0, e)) < 0)
                 return -1;
         }
     }

@@ -6,7 +6,7 @@ static const struct op euler_op[] = {DRIFT(1.0), KICK(1.0), EVALUATE(1.0)};
 
 const struct integrator integrator_euler = {
     .name = "euler",
-    .doc = "explicit Euler, first order: any oscillation grows, by w^2 / 2 a step",
+    .doc = "explicit Euler: any oscillation grows, by w^2 / 2",
     .source =
         "Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I (1993), eq. I.7.3",
     .order = 1,

@@ -5,16 +5,17 @@
 /* The kicked columns are predicted to the end of the step, where the rates are evaluated, then corrected
  * to the mean of both rates. With rates that do not depend on what is kicked this is the symplectic
  * velocity Verlet; with viscosity it is Springel (2005, MNRAS 364, 1105)'s predicted form. Among kicked
- * properties alone (density by continuity and velocity) it is Heun's method. */
+ * properties alone (density by continuity and velocity) the predicted values p advance by
+ * dt (3 r(p) - r(p of the step before)) / 2: Adams-Bashforth's second-order method. Heun's would need the
+ * rates of the corrected values, another evaluation. */
 static const struct op kdk_op[] = {
     KICK(0.5), DRIFT(1.0), KICK(0.5), SAVE_RATES, EVALUATE(1.0), CORRECT(0.5),
 };
 
 const struct integrator integrator_kdk = {
     .name = "kdk",
-    .doc =
-        "kick-drift-kick leapfrog, kicked properties predicted to the end of the step: symplectic in "
-        "(x, v), stable to w = 2; among kicked properties it is Heun's method and grows by w^4 / 8",
+    .doc = "kick-drift-kick leapfrog, kicked properties predicted to the end: symplectic in x "
+           "and v, stable to w = 2; among kicked properties it grows by w^4 / 4",
     .source = "Springel (2005), MNRAS 364, 1105, eq. 27-28, with predicted velocities",
     .order = 2,
     .evaluations = 1,
@@ -29,9 +30,8 @@ static const struct op dkd_op[] = {
 
 const struct integrator integrator_dkd = {
     .name = "dkd",
-    .doc = "drift-kick-drift leapfrog, kicked properties predicted to mid-step by the last rates: "
-           "symplectic in (x, v), stable to w = 2; among kicked properties it is Adams-Bashforth's "
-           "second and grows by w^4 / 4",
+    .doc = "drift-kick-drift leapfrog, kicked properties predicted to mid-step: symplectic in x "
+           "and v, stable to w = 2; among kicked properties it grows by w^4 / 4",
     .source = "Springel (2005), MNRAS 364, 1105, eq. 26; one evaluation a step",
     .order = 2,
     .evaluations = 1,

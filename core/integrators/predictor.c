@@ -10,8 +10,7 @@ static const struct op pec_op[] = {
 
 const struct integrator integrator_pec = {
     .name = "pec",
-    .doc = "predict by the last rates, evaluate and correct at mid-step: dkd in other words, one "
-           "evaluation",
+    .doc = "predict by the last rates, evaluate and correct at mid-step: dkd in other words",
     .source = "Monaghan (1989), J. Comput. Phys. 82, 1; one evaluation a step",
     .order = 2,
     .evaluations = 1,
@@ -27,8 +26,8 @@ static const struct op pece_op[] = {
 
 const struct integrator integrator_pece = {
     .name = "pece",
-    .doc = "predict by the rates of the beginning, evaluate and correct at mid-step, evaluate: "
-           "symplectic in other words, two evaluations",
+    .doc = "predict by the rates of the beginning, evaluate and correct at mid-step: symplectic "
+           "in other words",
     .source = "Monaghan (1989), J. Comput. Phys. 82, 1",
     .order = 2,
     .evaluations = 2,

@@ -9,7 +9,7 @@ static const struct op rk2_op[] = {
 
 const struct integrator integrator_rk2 = {
     .name = "rk2",
-    .doc = "explicit midpoint rule, two evaluations: any oscillation grows, by w^4 / 8 a step",
+    .doc = "explicit midpoint rule: any oscillation grows, by w^4 / 8",
     .source =
         "Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I (1993), table II.1.1",
     .order = 2,
@@ -36,8 +36,8 @@ static const struct op ssp_rk3_op[] = {
 
 const struct integrator integrator_ssp_rk3 = {
     .name = "ssp-rk3",
-    .doc = "strong-stability-preserving Runge-Kutta of third order, three evaluations: damps "
-           "oscillations by w^4 / 24 a step, stable to w = sqrt 3",
+    .doc = "strong-stability-preserving Runge-Kutta of third order: damps oscillations by w^4 / "
+           "24, stable to w = sqrt 3",
     .source = "Shu & Osher (1988), J. Comput. Phys. 77, 439, eq. 2.18",
     .order = 3,
     .evaluations = 3,
@@ -71,8 +71,8 @@ static const struct op rk4_op[] = {
 
 const struct integrator integrator_rk4 = {
     .name = "rk4",
-    .doc = "classical Runge-Kutta method of fourth order, four evaluations: damps oscillations by "
-           "w^6 / 144 a step, stable to w = 2 sqrt 2",
+    .doc = "classical Runge-Kutta of fourth order: damps oscillations by w^6 / 144, stable to w "
+           "= 2 sqrt 2",
     .source = "Kutta (1901), Z. Math. Phys. 46, 435; Hairer, Norsett & Wanner (1993), table II.1.2",
     .order = 4,
     .evaluations = 4,

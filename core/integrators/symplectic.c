@@ -11,9 +11,8 @@ static const struct op symplectic_op[] = {
 
 const struct integrator integrator_symplectic = {
     .name = "symplectic",
-    .doc =
-        "DualSPHysics' two-step position Verlet, two evaluations: symplectic in (x, v), stable to "
-        "w = 2; among kicked properties it is the midpoint rule and grows by w^4 / 8",
+    .doc = "DualSPHysics' two-step position Verlet: symplectic in x and v, stable to w = 2; "
+           "among kicked properties it grows by w^4 / 8",
     .source =
         "Dominguez et al. (2022), Comput. Part. Mech. 9, 867, section 2.8; density without its factor",
     .order = 2,

@@ -3,7 +3,9 @@
 #include "integrators/families.h"
 #include <math.h>
 
-/* Both halves of the leapfrog are coupled again every so many steps, or they drift apart. */
+/* The even and the odd steps are coupled again every so many, or they drift apart: by a step of first order. As
+ * the number is even, the next coupling starts from those that have no part of its error, and the whole is of
+ * second order. */
 #define COUPLED 40
 
 /* y.0: y of the step before. Where a step is not as long as the last one the two-step formula is that of the same
@@ -26,9 +28,8 @@ static void verlet2_adapt(struct op *op, uint64_t step, double ratio)
 
 const struct integrator integrator_verlet2 = {
     .name = "verlet2",
-    .doc =
-        "DualSPHysics' two-step Verlet, coupled every 40 steps: among kicked properties the leapfrog, "
-        "stable to w = 1 but for the coupling; in (x, v) it grows by w^4 / 16 at any w",
+    .doc = "DualSPHysics' two-step Verlet, coupled every 40 steps: among kicked properties it "
+           "grows by up to w^2 / 80, above w = 1 without bound; in x and v by w^4 / 16 and more",
     .source =
         "Verlet (1967), Phys. Rev. 159, 98; Dominguez et al. (2022), Comput. Part. Mech. 9, 867, "
         "section 2.8",

@@ -89,10 +89,12 @@ static void add_combination(struct program *g, const struct op *op, double step,
                             const struct rate *q, uint32_t k)
 {
     const int second = op->a2 != 0.0 ? rate_of(g->array, q->rate) : -1;
-    int slot[SLOT_COUNT], n = 0;
+    int slot[SLOT_COUNT] = {SLOT_NOW}, n = 0;
     for (int s = SLOT_NOW; s < SLOT_COUNT; s++)
-        if (op->weight[s] != 0.0)
+        if (op->weight[s] != 0.0) {
             slot[n++] = s;
+            line_read(g, q->kept[s], k); /* before it is written, if it is */
+        }
     struct action *x =
         act(g, k, q->kept[op->to], q->kept[slot[0]], op->a * step, op->a != 0.0 ? q->rate : -1, -1);
     x->w = op->weight[slot[0]];

@@ -191,8 +191,20 @@ def oscillations():
     limits("rho and v", scene, frequency, wave_size, {"ssp-rk3": math.sqrt(3)})
 
 
+def floats():
+    """State in two floats each, with steps that grow: what is kept of them is no worse. The bar: pairs of pressure
+    p0 = 1 push with about 1 / h = 25 from either side, summed to 6e-7 of that; over t = 0.25."""
+    scene = changed(wave, scheme="barotropic-continuity", time={"end": 0.25, "cfl": 0.1})
+    scene["particles"]["gas"]["fields"]["v"] = ["0.02 * sin(2 * pi * x)"]
+    for name in ORDER:
+        scene["time"]["integrator"] = name
+        double, mixed = (scenes.good(changed(scene, precision=p)).last() for p in ("double", "mixed"))
+        bar(f"mixed precision, {name}: difference of v", abs(double["v"] - mixed["v"]).max(), 1e-15, 6e-7 * 2 * 25 * 0.25)
+
+
 orbits()
 waves()
+floats()
 oscillations()
 drift()
 scenes.end()

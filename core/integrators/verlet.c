@@ -28,8 +28,10 @@ static void verlet2_adapt(struct op *op, uint64_t step, double ratio)
 
 const struct integrator integrator_verlet2 = {
     .name = "verlet2",
-    .doc = "DualSPHysics' two-step Verlet, coupled every 40 steps: among kicked properties it "
-           "grows by up to w^2 / 80, above w = 1 without bound; in x and v by w^4 / 16 and more",
+    .doc =
+        "DualSPHysics' two-step Verlet, coupled every 40 steps: among kicked properties it grows "
+        "by up to w^2 / 80, above w = 1 without bound; in x and v by w^4 / 16 and more; not for "
+        "strong dissipation",
     .source =
         "Verlet (1967), Phys. Rev. 159, 98; Dominguez et al. (2022), Comput. Part. Mech. 9, 867, "
         "section 2.8",

@@ -8,7 +8,7 @@ const struct integrator integrator_euler = {
     .name = "euler",
     .doc = "explicit Euler: any oscillation grows, by w^2 / 2",
     .source =
-        "Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I (1993), eq. I.7.3",
+        "Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I (1993), section I.7",
     .order = 1,
     .evaluations = 1,
     .knee = 1.0,

@@ -13,8 +13,7 @@ const struct integrator integrator_symplectic = {
     .name = "symplectic",
     .doc = "DualSPHysics' two-step position Verlet: symplectic in x and v, stable to w = 2; "
            "among kicked properties it grows by w^4 / 8",
-    .source =
-        "Dominguez et al. (2022), Comput. Part. Mech. 9, 867, section 2.8; density without its factor",
+    .source = "Dominguez et al. (2022), Comput. Part. Mech. 9, 867; density without its factor",
     .order = 2,
     .evaluations = 2,
     .knee = 1.0,

@@ -33,8 +33,7 @@ const struct integrator integrator_verlet2 = {
         "by up to w^2 / 80, above w = 1 without bound; in x and v by w^4 / 16 and more; not for "
         "strong dissipation",
     .source =
-        "Verlet (1967), Phys. Rev. 159, 98; Dominguez et al. (2022), Comput. Part. Mech. 9, 867, "
-        "section 2.8",
+        "Verlet (1967), Phys. Rev. 159, 98; Dominguez et al. (2022), Comput. Part. Mech. 9, 867",
     .order = 2,
     .evaluations = 1,
     .knee = 1.0,

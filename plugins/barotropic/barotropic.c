@@ -27,7 +27,7 @@ static const sph_item summation_item = {
     .dims = SPH_ALL_DIMS,
     .name = "barotropic",
     .doc = "barotropic fluid without dissipation, fixed h: density by summation",
-    .source = "Price 2012, doi:10.1016/j.jcp.2010.12.011, eq. 2, 30",
+    .source = "Price 2012, doi:10.1016/j.jcp.2010.12.011, sections 2, 3",
 };
 
 static const sph_item continuity_item = {

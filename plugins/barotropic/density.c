@@ -24,7 +24,7 @@ static const sph_item item = {
     .dims = SPH_ALL_DIMS,
     .name = "barotropic-density",
     .doc = "density by summation at fixed h",
-    .source = "Price 2012, doi:10.1016/j.jcp.2010.12.011, eq. 2",
+    .source = "Price 2012, doi:10.1016/j.jcp.2010.12.011, section 2",
     .props = SPH_LIST(props),
 };
 

@@ -22,7 +22,7 @@ static const sph_item item = {
     .dims = SPH_ALL_DIMS,
     .name = "barotropic-energy",
     .doc = "the energy of compression, of an equation of state that gives u: in the log",
-    .source = "Price 2012, doi:10.1016/j.jcp.2010.12.011, eq. 17",
+    .source = "Price 2012, doi:10.1016/j.jcp.2010.12.011, section 3",
     .props = SPH_LIST(props),
 };
 

@@ -47,7 +47,7 @@ static const sph_item item = {
     .dims = SPH_ALL_DIMS,
     .name = "barotropic-momentum",
     .doc = "acceleration by pressure alone",
-    .source = "Price 2012, doi:10.1016/j.jcp.2010.12.011, eq. 30, at fixed h",
+    .source = "Price 2012, doi:10.1016/j.jcp.2010.12.011, section 3, at fixed h",
     .props = SPH_LIST(props),
 };
 

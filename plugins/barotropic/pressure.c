@@ -25,7 +25,7 @@ static const sph_item item = {
     .dims = SPH_ALL_DIMS,
     .name = "barotropic-pressure",
     .doc = "pressure over the square of the density, for barotropic-momentum",
-    .source = "Price 2012, doi:10.1016/j.jcp.2010.12.011, eq. 30",
+    .source = "Price 2012, doi:10.1016/j.jcp.2010.12.011, section 3",
     .props = SPH_LIST(props),
 };
 

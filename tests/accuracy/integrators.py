@@ -49,8 +49,8 @@ def order(what, counts, errors, expected):
 
 
 def kepler(x, v, t):
-    """After t, about a centre of mu = 1: Lagrange's f and g (Danby 1988, Fundamentals of Celestial Mechanics,
-    section 6.3), Kepler's equation by Newton's method."""
+    """After t, about a centre of mu = 1: Lagrange's f and g (Danby 1988, Fundamentals of Celestial
+    Mechanics), Kepler's equation by Newton's method."""
     r = math.hypot(*x)
     a = 1 / (2 / r - v @ v)
     c, s, m = 1 - r / a, x @ v / math.sqrt(a), t / a**1.5

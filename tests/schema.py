@@ -193,5 +193,14 @@ for name, wanted in expected.items():
     if name not in known:
         check(False, f"{name}: not found in core/scene")
 
+# The integrators: those of the program, in the schema and in the manual.
+with open(os.path.join(top, "core/integrators/integrator.c"), encoding="utf-8") as file:
+    names = re.findall(r'"([^"]+)"', re.search(r"names\[\] = \{([^}]*)\}", file.read())[1])
+with open(os.path.join(top, "man/sph-scene.5"), encoding="utf-8") as file:
+    page = file.read()
+check(names == definitions["time"]["properties"]["integrator"]["enum"], f"integrators are {names}")
+for name in names:
+    check(f".Cm {name}" in page, f"sph-scene.5 does not name the integrator {name}")
+
 print(f"{len(examples)} examples, {len(wrong)} wrong scenes, {len(known)} sets of keys")
 sys.exit(1 if failures else 0)

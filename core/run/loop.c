@@ -156,7 +156,7 @@ static int steps(struct loop *l, struct error *e)
             return -1;
     if (run_settle(r, e))
         return -1;
-    if (r->step && r->plan->integrator->op[r->plan->integrator->n_op - 1].kind != OP_CORRECT) {
+    if (r->step && !integrator_ends_evaluated(r->plan->integrator)) {
         /* The last evaluation was in mid-step: bring what is derived up to the end. */
         if (run_passes(r, MOMENT_EVALUATE, e))
             return -1;

@@ -66,6 +66,10 @@ struct run {
     bool defer;     /* the next step may do what is left of this one: run_settle */
     size_t left;    /* operations left, from the table's end; dt: left_dt */
     double left_dt;
+    const struct op *op; /* the step's table: the integrator's, or what is adapted to this step */
+    struct op adapted[OPS_MAX];
+    double
+        dt_last; /* of the step before; 0: there was none. Part of the state, where a table is adapted */
 };
 
 int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool audit,

@@ -37,7 +37,7 @@ enum chart_kind { CHART_COST, CHART_CONVERGENCE, CHART_MAP };
 
 struct chart_picture {
     const cJSON *node;
-    const char *name;
+    const char *name, *title;
     enum chart_kind kind;
     const char *x;            /* a measure (row.h) or an axis whose labels are numbers */
     size_t x_axis, y_axis;    /* of a map; x_axis of others too, or SIZE_MAX */

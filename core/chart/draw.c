@@ -14,45 +14,106 @@
 
 /* -- Text ------------------------------------------------------------------------------------------ */
 
-void sheet_font(cairo_t *cr, double size, bool bold)
+void sheet_font(struct sheet *s, double size, bool bold)
 {
-    cairo_select_font_face(cr, "sans-serif", CAIRO_FONT_SLANT_NORMAL,
+    s->size = size;
+    s->bold = bold;
+    cairo_select_font_face(s->cr, "sans-serif", CAIRO_FONT_SLANT_NORMAL,
                            bold ? CAIRO_FONT_WEIGHT_BOLD : CAIRO_FONT_WEIGHT_NORMAL);
-    cairo_set_font_size(cr, size);
+    cairo_set_font_size(s->cr, size);
 }
 
-void sheet_ink(cairo_t *cr, enum shade shade)
+static const unsigned char shades[] = {[INK] = 0x22, [GREY] = 0x6a, [WHITE] = 0xff};
+
+void sheet_ink(struct sheet *s, enum shade shade)
 {
-    const double c = shade == INK ? 0.13 : 0.42;
-    cairo_set_source_rgb(cr, c, c, c);
+    const double c = shades[shade] / 255.0;
+    s->shade = shade;
+    cairo_set_source_rgb(s->cr, c, c, c);
 }
 
-double sheet_width(cairo_t *cr, const char *text)
+double sheet_width(const struct sheet *s, const char *text)
 {
     cairo_text_extents_t extents;
-    cairo_text_extents(cr, text, &extents);
+    cairo_text_extents(s->cr, text, &extents);
     return extents.x_advance;
+}
+
+/* As characters of XML; it knows no control characters. */
+static void put_escaped(FILE *f, const char *text)
+{
+    for (; *text; text++) {
+        const char *name = *text == '&'   ? "&amp;"
+                           : *text == '<' ? "&lt;"
+                           : *text == '>' ? "&gt;"
+                                          : NULL;
+        if (name)
+            fputs(name, f);
+        else
+            putc((unsigned char)*text < 0x20 ? ' ' : *text, f);
+    }
+}
+
+/* A text of SVG, of the width that it was laid out with whatever font the reader has. */
+static void put_text(struct sheet *s, double x, double y, bool upward, const char *text)
+{
+    const double width = sheet_width(s, text);
+    if (!text[0])
+        return;
+    fprintf(s->texts, "<text x=\"%.1f\" y=\"%.1f\" font-size=\"%g\"", x, y, s->size);
+    if (s->bold)
+        fputs(" font-weight=\"bold\"", s->texts);
+    if (s->shade != INK)
+        fprintf(s->texts, " fill=\"#%02x%02x%02x\"", shades[s->shade], shades[s->shade],
+                shades[s->shade]);
+    if (upward)
+        fprintf(s->texts, " transform=\"rotate(-90 %.1f %.1f)\"", x, y);
+    fprintf(s->texts, " textLength=\"%.1f\">", width);
+    put_escaped(s->texts, text);
+    fputs("</text>\n", s->texts);
+}
+
+void sheet_put(struct sheet *s, double x, double y, double anchor_x, double anchor_y,
+               const char *text)
+{
+    cairo_text_extents_t capital;
+    cairo_text_extents(s->cr, "0", &capital);
+    x -= anchor_x * sheet_width(s, text);
+    y += anchor_y * capital.height;
+    if (s->texts) {
+        put_text(s, x, y, false, text);
+    } else {
+        cairo_move_to(s->cr, x, y);
+        cairo_show_text(s->cr, text);
+    }
+}
+
+void sheet_put_upward(struct sheet *s, double x, double y, const char *text)
+{
+    cairo_text_extents_t capital;
+    cairo_text_extents(s->cr, "0", &capital);
+    x += capital.height / 2;
+    y += sheet_width(s, text) / 2;
+    if (s->texts) {
+        put_text(s, x, y, true, text);
+        return;
+    }
+    cairo_save(s->cr);
+    cairo_translate(s->cr, x, y);
+    cairo_rotate(s->cr, -M_PI / 2);
+    cairo_move_to(s->cr, 0, 0);
+    cairo_show_text(s->cr, text);
+    cairo_restore(s->cr);
 }
 
 double sheet_text(struct sheet *s, double x, double y, double size, enum shade shade, bool bold,
                   const char *text)
 {
-    sheet_font(s->cr, size, bold);
-    sheet_ink(s->cr, shade);
-    if (s->draws) {
-        cairo_move_to(s->cr, x, y);
-        cairo_show_text(s->cr, text);
-    }
-    return sheet_width(s->cr, text);
-}
-
-void sheet_text_upward(struct sheet *s, double x, double y, const char *text)
-{
-    cairo_save(s->cr);
-    cairo_translate(s->cr, x, y);
-    cairo_rotate(s->cr, -M_PI / 2);
-    page_text(s->cr, 0, 0, 0.5, 0.5, text);
-    cairo_restore(s->cr);
+    sheet_font(s, size, bold);
+    sheet_ink(s, shade);
+    if (s->draws)
+        sheet_put(s, x, y, 0, 0, text);
+    return sheet_width(s, text);
 }
 
 /* Breaks a text at blanks to lines of at most `room` pixels, in the font that is set. */
@@ -63,7 +124,7 @@ static void break_lines(struct sheet *s, const char *text, double room)
         const size_t word = strcspn(text, " ");
         char longer[LINE_BYTES];
         snprintf(longer, sizeof longer, "%s%s%.*s", line, line[0] ? " " : "", (int)word, text);
-        if (line[0] && sheet_width(s->cr, longer) > room) {
+        if (line[0] && sheet_width(s, longer) > room) {
             snprintf(s->line[s->n_line++], LINE_BYTES, "%s", line);
             snprintf(line, sizeof line, "%.*s", (int)word, text);
         } else {
@@ -78,12 +139,17 @@ static void break_lines(struct sheet *s, const char *text, double room)
 
 /* -- Layout ---------------------------------------------------------------------------------------- */
 
-/* Where the results of others come from, below everything. */
+/* Where the results of others come from, below everything: the source of series i, or NULL. */
+static const char *source(const struct plot *q, size_t i)
+{
+    return q->series[i].peer ? q->series[i].peer->source : NULL;
+}
+
 static size_t sources(const struct plot *q)
 {
     size_t n = 0;
-    for (size_t i = 0; i < q->c->n_peer && q->p->kind != CHART_MAP; i++)
-        n += q->c->peer[i].source != NULL;
+    for (size_t i = 0; i < q->n_series; i++)
+        n += source(q, i) != NULL;
     return n;
 }
 
@@ -93,10 +159,10 @@ static double foot_height(const struct plot *q)
     return n ? 10 + 14 * (double)n : 0;
 }
 
-static double source_text(struct sheet *s, const struct chart_peer *p, double y)
+static double source_text(struct sheet *s, size_t i, double y)
 {
     char text[LINE_BYTES];
-    snprintf(text, sizeof text, "%s: %s", p->label, p->source);
+    snprintf(text, sizeof text, "%s: %s", s->q->series[i].label, source(s->q, i));
     return sheet_text(s, AIR, y, FONT_SMALL, GREY, false, text);
 }
 
@@ -111,15 +177,15 @@ static int lay_out(struct sheet *s, struct error *e)
         legend_draw(s);
     }
     s->width = s->right + s->right_width + AIR;
-    s->width = fmax(s->width, 2 * AIR + sheet_text(s, 0, 0, FONT_TITLE, INK, true, s->q->c->title));
-    for (size_t i = 0; i < s->q->c->n_peer && sources(s->q); i++)
-        if (s->q->c->peer[i].source)
-            s->width = fmax(s->width, 2 * AIR + source_text(s, &s->q->c->peer[i], 0));
-    sheet_font(s->cr, FONT, false);
+    s->width = fmax(s->width, 2 * AIR + sheet_text(s, 0, 0, FONT_TITLE, INK, true, s->q->p->title));
+    for (size_t i = 0; i < s->q->n_series; i++)
+        if (source(s->q, i))
+            s->width = fmax(s->width, 2 * AIR + source_text(s, i, 0));
+    sheet_font(s, FONT, false);
     break_lines(s, s->q->subtitle, s->width - 2 * AIR);
     s->top = AIR + FONT_TITLE + 6 + LINE_HEIGHT * s->n_line + 14;
     const double below = map ? 0 : 48, plot = s->h + below;
-    s->height = s->top + fmax(plot + (map ? 62 : 0), s->right_height) + foot_height(s->q) + AIR;
+    s->height = s->top + fmax(plot + (map ? 46 : 0), s->right_height) + foot_height(s->q) + AIR;
     s->width = ceil(s->width);
     s->height = ceil(s->height);
     return 0;
@@ -130,7 +196,7 @@ static void draw_sheet(struct sheet *s)
     cairo_set_source_rgb(s->cr, 1, 1, 1);
     cairo_paint(s->cr);
     s->draws = true;
-    sheet_text(s, AIR, AIR + FONT_TITLE - 3, FONT_TITLE, INK, true, s->q->c->title);
+    sheet_text(s, AIR, AIR + FONT_TITLE - 3, FONT_TITLE, INK, true, s->q->p->title);
     for (int i = 0; i < s->n_line; i++)
         sheet_text(s, AIR, AIR + FONT_TITLE + 2 + LINE_HEIGHT * (i + 1), FONT, GREY, false,
                    s->line[i]);
@@ -141,9 +207,9 @@ static void draw_sheet(struct sheet *s)
         legend_draw(s);
     }
     double y = s->height - foot_height(s->q) - AIR + 20;
-    for (size_t i = 0; i < s->q->c->n_peer && sources(s->q); i++)
-        if (s->q->c->peer[i].source) {
-            source_text(s, &s->q->c->peer[i], y);
+    for (size_t i = 0; i < s->q->n_series; i++)
+        if (source(s->q, i)) {
+            source_text(s, i, y);
             y += 14;
         }
 }
@@ -168,30 +234,57 @@ static cairo_status_t to_stream(void *stream, const unsigned char *data, unsigne
     return fwrite(data, 1, n, stream) == n ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
 }
 
+/* What cairo drew, with the texts before its end. */
+static int join(const struct output *o, const char *name, const char *drawn, size_t n,
+                const char *texts, struct error *e)
+{
+    static const char end[] = "</svg>";
+    size_t at = n;
+    while (at > 0 && strncmp(drawn + at, end, sizeof end - 1) != 0)
+        at--;
+    char *all =
+        text_format("%.*s<g font-family=\"DejaVu Sans,Verdana,sans-serif\" fill=\"#222222\">"
+                    "\n%s</g>\n%s\n",
+                    (int)at, drawn, texts, end);
+    const int status = all ? output_write(o, name, all, strlen(all), e) : error_memory(e, name, n);
+    free(all);
+    return status;
+}
+
+static cairo_status_t draw_svg(struct sheet *s, FILE *drawn)
+{
+    cairo_surface_t *surface =
+        cairo_svg_surface_create_for_stream(to_stream, drawn, s->width, s->height);
+    s->cr = context(surface);
+    draw_sheet(s);
+    cairo_status_t status = cairo_status(s->cr);
+    cairo_destroy(s->cr);
+    cairo_surface_finish(surface);
+    status = status ? status : cairo_surface_status(surface);
+    cairo_surface_destroy(surface);
+    return status;
+}
+
 static int write_svg(const struct sheet *layout, const struct output *o, const char *name,
                      struct error *e)
 {
     struct sheet s = *layout;
-    char *text = NULL;
-    size_t size = 0;
+    char *text = NULL, *texts = NULL;
+    size_t size = 0, n_texts = 0;
     FILE *stream = open_memstream(&text, &size);
-    if (!stream)
-        return error_memory(e, name, 1);
-    cairo_surface_t *surface =
-        cairo_svg_surface_create_for_stream(to_stream, stream, s.width, s.height);
-    s.cr = context(surface);
-    draw_sheet(&s);
-    cairo_status_t status = cairo_status(s.cr);
-    cairo_destroy(s.cr);
-    cairo_surface_finish(surface);
-    status = status ? status : cairo_surface_status(surface);
-    cairo_surface_destroy(surface);
-    int result = fclose(stream) ? error_memory(e, name, size) : 0;
-    if (!result && status)
-        result = error_set(e, EXIT_RUN, "cannot draw %s: %s", name, cairo_status_to_string(status));
-    if (!result)
-        result = output_write(o, name, text, size, e);
+    s.texts = open_memstream(&texts, &n_texts);
+    cairo_status_t status = CAIRO_STATUS_NO_MEMORY;
+    if (stream && s.texts)
+        status = draw_svg(&s, stream);
+    const bool closed = (!stream || fclose(stream) == 0) & (!s.texts || fclose(s.texts) == 0);
+    int result = 0;
+    if (status || !closed)
+        result = error_set(e, EXIT_RUN, "cannot draw %s: %s", name,
+                           cairo_status_to_string(status ? status : CAIRO_STATUS_NO_MEMORY));
+    else
+        result = join(o, name, text, size, texts, e);
     free(text);
+    free(texts);
     return result;
 }
 

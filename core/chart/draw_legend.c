@@ -37,14 +37,15 @@ static double put_member(struct sheet *s, size_t i, double y)
 {
     const struct plot *q = s->q;
     const size_t at = q->front[i];
-    char number[24], labels[256], text[400];
+    char number[24], labels[256], text[400], x_text[32], y_text[32];
     snprintf(number, sizeof number, "%zu", i + 1);
     chart_labels(q->c, &q->c->run[q->run[at]], q->varied, q->n_varied, false, labels,
                  sizeof labels);
-    snprintf(text, sizeof text, "%s%s%.2g at %.3g", labels, labels[0] ? ":  " : "", q->y[at],
-             q->x[at]);
-    sheet_font(s->cr, FONT_SMALL, true);
-    sheet_text(s, s->right + SAMPLE - sheet_width(s->cr, number), y + 10, FONT_SMALL, GREY, true,
+    snprintf(text, sizeof text, "%s%s%s at %s", labels, labels[0] ? ":  " : "",
+             plot_number(y_text, sizeof y_text, q->y[at], 2),
+             plot_number(x_text, sizeof x_text, q->x[at], 3));
+    sheet_font(s, FONT_SMALL, true);
+    sheet_text(s, s->right + SAMPLE - sheet_width(s, number), y + 10, FONT_SMALL, GREY, true,
                number);
     widen(s, TEXT + sheet_text(s, s->right + TEXT, y + 10, FONT_SMALL, INK, false, text));
     return y + 15;
@@ -64,7 +65,8 @@ static double put_front(struct sheet *s, double y)
         cairo_line_to(s->cr, s->right + SAMPLE, y + 7);
         cairo_stroke(s->cr);
     }
-    snprintf(text, sizeof text, "none has less error for less%s", q->c->n_peer ? " (of ours)" : "");
+    const bool peers = q->n_series > 0 && q->series[q->n_series - 1].peer;
+    snprintf(text, sizeof text, "no run%s is better in both", peers ? " of ours" : "");
     widen(s, TEXT + sheet_text(s, s->right + TEXT, y + 11, FONT, INK, false, "Pareto front"));
     widen(s, TEXT + sheet_text(s, s->right + TEXT, y + 25, FONT_SMALL, GREY, false, text));
     y += 32;
@@ -85,7 +87,7 @@ static double put_failed(struct sheet *s, double y)
         return y;
     if (s->draws) {
         failed_marker(s->cr, s->right + SAMPLE / 2, y + 8);
-        sheet_ink(s->cr, GREY);
+        sheet_ink(s, GREY);
         cairo_set_line_width(s->cr, 1.6);
         cairo_stroke(s->cr);
     }

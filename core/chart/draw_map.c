@@ -38,7 +38,7 @@ static double widest_label(struct sheet *s, size_t axis)
     double widest = 0;
     for (size_t i = 0; i < s->q->c->axis[axis].n_value; i++)
         if (has(s->q, axis, i))
-            widest = fmax(widest, sheet_width(s->cr, s->q->c->axis[axis].value[i].label));
+            widest = fmax(widest, sheet_width(s, s->q->c->axis[axis].value[i].label));
     return widest;
 }
 
@@ -67,7 +67,7 @@ int map_lay_out(struct sheet *s, struct error *e)
     if (colour_map_make(&s->map, NULL, e))
         return -1;
     colour_range(s);
-    sheet_font(s->cr, FONT, false);
+    sheet_font(s, FONT, false);
     const double cell = fmax(CELL_WIDTH, 14 + widest_label(s, s->q->p->x_axis));
     s->w = fmax(cell, floor(300 / (double)nx)) * (double)nx;
     s->h = fmax(CELL_HEIGHT, floor(200 / (double)ny)) * (double)ny;
@@ -76,7 +76,7 @@ int map_lay_out(struct sheet *s, struct error *e)
     ticks_make(&s->bar, s->low, s->high, true, 7);
     double widest = 0;
     for (int i = 0; i < s->bar.n; i++)
-        widest = fmax(widest, sheet_width(s->cr, s->bar.text[i]));
+        widest = fmax(widest, sheet_width(s, s->bar.text[i]));
     s->right_width = BAR + 8 + widest + 28;
     s->right_height = s->h;
     return 0;
@@ -107,9 +107,9 @@ static void draw_value(struct sheet *s, const struct box *b, double error)
     cairo_rectangle(s->cr, b->x, b->y, b->w, b->h);
     cairo_fill(s->cr);
     snprintf(text, sizeof text, "%.2g", error);
-    cairo_set_source_rgb(s->cr, t < 0.6 ? 1 : 0.1, t < 0.6 ? 1 : 0.1, t < 0.6 ? 1 : 0.1);
-    sheet_font(s->cr, FONT_SMALL, false);
-    page_text(s->cr, b->x + b->w / 2, b->y + b->h / 2, 0.5, 0.5, text);
+    sheet_ink(s, t < 0.6 ? WHITE : INK);
+    sheet_font(s, FONT_SMALL, false);
+    sheet_put(s, b->x + b->w / 2, b->y + b->h / 2, 0.5, 0.5, text);
 }
 
 /* Slanted lines, and one word on white. */
@@ -127,13 +127,13 @@ static void draw_hatched(struct sheet *s, const struct box *b, const char *word)
     cairo_set_line_width(cr, 1.2);
     cairo_stroke(cr);
     cairo_restore(cr);
-    sheet_font(cr, FONT_SMALL, false);
-    const double width = sheet_width(cr, word) + 6;
+    sheet_font(s, FONT_SMALL, false);
+    const double width = sheet_width(s, word) + 6;
     cairo_rectangle(cr, b->x + (b->w - width) / 2, b->y + b->h / 2 - 8, width, 16);
     cairo_set_source_rgb(cr, 1, 1, 1);
     cairo_fill(cr);
-    sheet_ink(cr, INK);
-    page_text(cr, b->x + b->w / 2, b->y + b->h / 2, 0.5, 0.5, word);
+    sheet_ink(s, INK);
+    sheet_put(s, b->x + b->w / 2, b->y + b->h / 2, 0.5, 0.5, word);
 }
 
 static void draw_cell(struct sheet *s, const struct box *b, size_t run)
@@ -145,9 +145,9 @@ static void draw_cell(struct sheet *s, const struct box *b, size_t run)
     } else if (r && r->there && r->status != ROW_DONE) {
         draw_hatched(s, b, row_status_name[r->status]);
     } else {
-        sheet_font(s->cr, FONT_SMALL, false);
-        sheet_ink(s->cr, GREY);
-        page_text(s->cr, b->x + b->w / 2, b->y + b->h / 2, 0.5, 0.5,
+        sheet_font(s, FONT_SMALL, false);
+        sheet_ink(s, GREY);
+        sheet_put(s, b->x + b->w / 2, b->y + b->h / 2, 0.5, 0.5,
                   !r         ? "skipped"
                   : r->there ? "0"
                              : "not made");
@@ -176,14 +176,14 @@ static void draw_cells(struct sheet *s)
             draw_cell(s, &b, run_at(s->q, i, j));
             b.x += b.w;
         }
-        sheet_font(s->cr, FONT, false);
-        sheet_ink(s->cr, INK);
-        page_text(s->cr, s->left - 8, b.y + b.h / 2, 1, 0.5, ay->value[j].label);
+        sheet_font(s, FONT, false);
+        sheet_ink(s, INK);
+        sheet_put(s, s->left - 8, b.y + b.h / 2, 1, 0.5, ay->value[j].label);
     }
     b.x = s->left;
     for (size_t i = 0; i < ax->n_value; i++)
         if (has(s->q, p->x_axis, i)) {
-            page_text(s->cr, b.x + b.w / 2, s->top + s->h + 9, 0.5, 1, ax->value[i].label);
+            sheet_put(s, b.x + b.w / 2, s->top + s->h + 9, 0.5, 1, ax->value[i].label);
             b.x += b.w;
         }
 }
@@ -201,8 +201,8 @@ static void draw_bar(struct sheet *s)
     cairo_set_source(cr, shades);
     cairo_fill(cr);
     cairo_pattern_destroy(shades);
-    sheet_ink(cr, INK);
-    sheet_font(cr, FONT, false);
+    sheet_ink(s, INK);
+    sheet_font(s, FONT, false);
     double widest = 0;
     for (int i = 0; i < s->bar.n; i++) {
         const double y = s->top + (1 - scale(s, s->bar.at[i])) * s->h;
@@ -210,21 +210,21 @@ static void draw_bar(struct sheet *s)
         cairo_line_to(cr, s->right + BAR + 4, y);
         cairo_set_line_width(cr, 1);
         cairo_stroke(cr);
-        page_text(cr, s->right + BAR + 8, y, 0, 0.5, s->bar.text[i]);
-        widest = fmax(widest, sheet_width(cr, s->bar.text[i]));
+        sheet_put(s, s->right + BAR + 8, y, 0, 0.5, s->bar.text[i]);
+        widest = fmax(widest, sheet_width(s, s->bar.text[i]));
     }
-    sheet_text_upward(s, s->right + BAR + 8 + widest + 16, s->top + s->h / 2, s->q->c->error.title);
+    sheet_put_upward(s, s->right + BAR + 8 + widest + 16, s->top + s->h / 2, s->q->c->error.title);
 }
 
 void map_draw(struct sheet *s)
 {
     draw_cells(s);
-    sheet_ink(s->cr, INK);
+    sheet_ink(s, INK);
     cairo_set_line_width(s->cr, 1);
     cairo_rectangle(s->cr, floor(s->left) + 0.5, floor(s->top) + 0.5, s->w, s->h);
     cairo_stroke(s->cr);
-    page_text(s->cr, s->left + s->w / 2, s->top + s->h + 31, 0.5, 1,
+    sheet_put(s, s->left + s->w / 2, s->top + s->h + 31, 0.5, 1,
               s->q->c->axis[s->q->p->x_axis].name);
-    sheet_text_upward(s, AIR + 6, s->top + s->h / 2, s->q->y_label);
+    sheet_put_upward(s, AIR + 6, s->top + s->h / 2, s->q->y_label);
     draw_bar(s);
 }

@@ -32,10 +32,10 @@ void plot_lay_out(struct sheet *s)
     s->h = PLOT_HEIGHT;
     ticks_make(&s->x, s->q->low[0], s->q->high[0], true, 9);
     ticks_make(&s->y, s->q->low[1], s->q->high[1], true, 9);
-    sheet_font(s->cr, FONT, false);
+    sheet_font(s, FONT, false);
     double widest = 0;
     for (int i = 0; i < s->y.n; i++)
-        widest = fmax(widest, sheet_width(s->cr, s->y.text[i]));
+        widest = fmax(widest, sheet_width(s, s->y.text[i]));
     s->left = floor(AIR + 24 + widest + 10);
     s->right = s->left + s->w + 20;
 }
@@ -190,9 +190,9 @@ static void draw_numbers(struct sheet *s)
         }
         char text[48];
         snprintf(text, sizeof text, next > i + 1 ? "%zu–%zu" : "%zu", i + 1, next);
-        x = fmax(x - 8, s->left + 4 + sheet_width(s->cr, text));
+        x = fmax(x - 8, s->left + 4 + sheet_width(s, text));
         y = fmin(plot_y(s, q->y[q->front[next - 1]]) + 8, s->top + s->h - 12);
-        page_text(s->cr, x, y, 1, 1, text);
+        sheet_put(s, x, y, 1, 1, text);
     }
 }
 
@@ -248,19 +248,19 @@ static void draw_grid(struct sheet *s)
 static void draw_axes(struct sheet *s)
 {
     const double bottom = s->top + s->h;
-    sheet_font(s->cr, FONT, false);
-    sheet_ink(s->cr, INK);
+    sheet_font(s, FONT, false);
+    sheet_ink(s, INK);
     cairo_set_line_width(s->cr, 1);
     cairo_rectangle(s->cr, floor(s->left) + 0.5, floor(s->top) + 0.5, s->w, s->h);
     cairo_stroke(s->cr);
     for (int i = 0; i < s->x.n; i++)
-        page_text(s->cr, plot_x(s, s->x.at[i]), bottom + 9, 0.5, 1, s->x.text[i]);
+        sheet_put(s, plot_x(s, s->x.at[i]), bottom + 9, 0.5, 1, s->x.text[i]);
     for (int i = 0; i < s->y.n; i++)
-        page_text(s->cr, s->left - 8, plot_y(s, s->y.at[i]), 1, 0.5, s->y.text[i]);
-    page_text(s->cr, s->left + s->w / 2, bottom + 31, 0.5, 1, s->q->x_label);
-    page_text(s->cr, s->left + s->w, bottom + 31, 1, 1, s->x.factor);
-    sheet_text_upward(s, AIR + 6, s->top + s->h / 2, s->q->y_label);
-    page_text(s->cr, s->left + 6, s->top + 16, 0, 1, s->y.factor);
+        sheet_put(s, s->left - 8, plot_y(s, s->y.at[i]), 1, 0.5, s->y.text[i]);
+    sheet_put(s, s->left + s->w / 2, bottom + 31, 0.5, 1, s->q->x_label);
+    sheet_put(s, s->left + s->w, bottom + 31, 1, 1, s->x.factor);
+    sheet_put_upward(s, AIR + 6, s->top + s->h / 2, s->q->y_label);
+    sheet_put(s, s->left + 6, s->top + 16, 0, 1, s->y.factor);
 }
 
 void plot_draw(struct sheet *s)
@@ -273,7 +273,7 @@ void plot_draw(struct sheet *s)
         draw_points(s, &s->q->series[i], i);
     draw_axes(s);
     draw_failed(s);
-    sheet_font(s->cr, FONT_SMALL, true);
-    sheet_ink(s->cr, GREY);
+    sheet_font(s, FONT_SMALL, true);
+    sheet_ink(s, GREY);
     draw_numbers(s);
 }

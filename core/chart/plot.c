@@ -3,6 +3,7 @@
 
 #include "base/text.h"
 #include "chart/fit.h"
+#include "io/render_parts.h"
 #include "chart/csv.h"
 #include <stdio.h>
 #include <stdlib.h>
@@ -59,7 +60,7 @@ static size_t series_of(struct plot *q, size_t *first, size_t run)
     return q->n_series++;
 }
 
-static int add_point(struct plot_series *s, double x, double y, struct error *e)
+static int add_point(struct plot_series *s, double x, double y, double size, struct error *e)
 {
     double *grown_x = realloc(s->x, (s->n + 1) * sizeof *grown_x);
     if (grown_x)
@@ -67,9 +68,13 @@ static int add_point(struct plot_series *s, double x, double y, struct error *e)
     double *grown_y = realloc(s->y, (s->n + 1) * sizeof *grown_y);
     if (grown_y)
         s->y = grown_y;
-    if (!grown_x || !grown_y)
+    double *grown_size = realloc(s->size, (s->n + 1) * sizeof *grown_size);
+    if (grown_size)
+        s->size = grown_size;
+    if (!grown_x || !grown_y || !grown_size)
         return error_memory(e, "a picture", s->n);
     s->x[s->n] = x;
+    s->size[s->n] = size;
     s->y[s->n++] = y;
     return 0;
 }
@@ -95,7 +100,7 @@ static int add_run(struct plot *q, size_t *first, size_t i, struct error *e)
     q->x[q->n] = x;
     q->y[q->n] = r->error;
     q->run[q->n++] = i;
-    return add_point(&q->series[series], x, r->error, e);
+    return add_point(&q->series[series], x, r->error, r->number[ROW_PARTICLES], e);
 }
 
 static int add_peer(struct plot *q, const struct chart_peer *peer, struct error *e)
@@ -105,10 +110,10 @@ static int add_peer(struct plot *q, const struct chart_peer *peer, struct error 
         return 0;
     struct plot_series *s = &q->series[q->n_series++];
     snprintf(s->label, sizeof s->label, "%s", peer->label);
-    s->peer = true;
+    s->peer = peer;
     for (size_t k = 0; k < peer->table->n_row; k++)
         if (add_point(s, chart_number(csv_cell(peer->table, k, x)),
-                      chart_number(csv_cell(peer->table, k, y)), e))
+                      chart_number(csv_cell(peer->table, k, y)), (double)NAN, e))
             return -1;
     return 0;
 }
@@ -183,49 +188,80 @@ static int make_line(struct plot_series *s, bool all, struct error *e)
     return 0;
 }
 
-static const char *short_number(char out[32], const char *format, double value)
+const char *plot_number(char *out, size_t size, double value, int digits)
 {
-    snprintf(out, 32, format, value);
+    char rounded[32];
+    snprintf(rounded, sizeof rounded, "%.*g", digits, value);
+    return pretty_number(out, size, strtod(rounded, NULL));
+}
+
+/* "−0.93", never "−0.00" */
+static const char *exponent(char out[32], double value)
+{
+    snprintf(out, 32, "%s%.2f", value <= -0.005 ? "−" : "", fabs(value));
     return out;
 }
 
-/* "slope -0.93, finest two -0.95"; of errors against particles the order in the spacing. */
+/* Of the runs with so many particles the one that gets most for its cost. */
+static size_t best_of(const struct plot_series *s, double size)
+{
+    size_t best = s->n;
+    for (size_t i = 0; i < s->n; i++)
+        if (fabs(s->size[i] - size) <= 0 &&
+            (best == s->n || s->x[i] * s->y[i] < s->x[best] * s->y[best]))
+            best = i;
+    return best;
+}
+
+/* The two finest: of the two largest numbers of particles, or else the last two of the line. */
+static bool finest_two(const struct plot_series *s, double x[2], double y[2])
+{
+    double size[2] = {0, 0};
+    for (size_t i = 0; i < s->n; i++)
+        size[1] = fmax(size[1], s->size[i]);
+    for (size_t i = 0; i < s->n; i++)
+        if (s->size[i] < size[1])
+            size[0] = fmax(size[0], s->size[i]);
+    const bool by_size = size[0] > 0;
+    if (!by_size && s->n_line < 3)
+        return false;
+    for (size_t k = 0; k < 2; k++) {
+        const size_t i = by_size ? best_of(s, size[k]) : s->line[s->n_line - 2 + k];
+        x[k] = s->x[i];
+        y[k] = s->y[i];
+    }
+    return true;
+}
+
+/* "slope −0.93, finest two −0.95"; of errors against particles the order in the spacing. */
 static void make_note(const struct plot *q, struct plot_series *s)
 {
     double slope, factor, local, x[2], y[2];
-    char a[32], b[32], c[32];
+    char a[32], b[32];
     if (!fit_power(s->x, s->y, s->n, &slope, &factor)) {
         snprintf(s->note, sizeof s->note, s->n == 0 ? "no finished run" : "one cost: no slope");
         return;
     }
-    double scale = 1;
     const cJSON *dim = json_get(q->c->scene.root, "dimensions");
     const bool order =
         q->p->kind == CHART_CONVERGENCE && strcmp(q->p->x, "particles") == 0 && cJSON_IsNumber(dim);
-    if (order)
-        scale = -dim->valuedouble;
+    const double scale = order ? -dim->valuedouble : 1;
     int n = snprintf(s->note, sizeof s->note, "%s %s", order ? "order" : "slope",
-                     short_number(a, "%.2f", scale * slope));
-    if (s->n_line < 3)
-        return;
-    for (size_t i = 0; i < 2; i++) {
-        x[i] = s->x[s->line[s->n_line - 2 + i]];
-        y[i] = s->y[s->line[s->n_line - 2 + i]];
-    }
-    if (!fit_power(x, y, 2, &local, &factor))
+                     exponent(a, scale * slope));
+    if (s->n < 3 || !finest_two(s, x, y) || !fit_power(x, y, 2, &local, &factor))
         return;
     n += snprintf(s->note + n, sizeof s->note - (size_t)n, ", finest two %s",
-                  short_number(b, "%.2f", scale * local));
+                  exponent(b, scale * local));
     if (fabs(local) < FLAT)
         snprintf(s->note + n, sizeof s->note - (size_t)n, ": floor near %s",
-                 short_number(c, "%.2g", sqrt(y[0] * y[1])));
+                 plot_number(a, sizeof a, sqrt(y[0] * y[1]), 2));
 }
 
 static int make_series(struct plot *q, struct error *e)
 {
     const bool family = free_axes(q) <= 1;
     for (size_t i = 0; i < q->n_series; i++) {
-        if (make_line(&q->series[i], family || q->series[i].peer, e))
+        if (make_line(&q->series[i], family || q->series[i].peer != NULL, e))
             return -1;
         make_note(q, &q->series[i]);
     }
@@ -350,6 +386,7 @@ void plot_free(struct plot *q)
     for (size_t i = 0; i < q->n_series; i++) {
         free(q->series[i].x);
         free(q->series[i].y);
+        free(q->series[i].size);
         free(q->series[i].line);
     }
     free(q->series);

@@ -10,9 +10,10 @@
 struct plot_series {
     char label[160], note[120];
     double *x, *y; /* of its finished runs */
+    double *size;  /* their particles; NaN: not known */
     size_t n;
-    size_t *line, n_line; /* points that a line joins, by rising x */
-    bool peer;
+    size_t *line, n_line;          /* points that a line joins, by rising x */
+    const struct chart_peer *peer; /* NULL: ours */
 };
 
 struct plot_failed {
@@ -43,6 +44,8 @@ int plot_make(struct plot *q, const struct chart *c, const struct chart_picture 
 void plot_free(struct plot *q);
 /* "2 unstable, 1 timeout"; "" if none failed. Returns out. */
 const char *plot_failures(const struct plot *q, char *out, size_t size);
+/* A number for people, of so many digits: "0.012", "1800", "3.4×10⁻⁷". Returns out. */
+const char *plot_number(char *out, size_t size, double value, int digits);
 /* A measure for people: "core-seconds [s]"; an axis's name as it is. */
 const char *plot_measure(const char *name);
 

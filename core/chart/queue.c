@@ -41,7 +41,8 @@ static bool is_left(const struct chart *c, const struct results *s, size_t i)
     const struct row *r = &s->row[i];
     if (!c->run[i].wanted)
         return false;
-    return !r->there ||
+    /* What was refused cost nothing, and may want a plugin that is there by now. */
+    return !r->there || r->status == ROW_REFUSED ||
            (r->status == ROW_TIMEOUT && r->reason && strcmp(r->reason, time_is_up(c, reason)) != 0);
 }
 

@@ -9,7 +9,8 @@ struct queue_options {
     bool progress; /* a line on a terminal */
 };
 
-/* The wanted runs without a row, among them those whose time was up under another limit. */
+/* The wanted runs without a row, or with one that is tried again: what was refused, and what came to no
+ * end in another time. */
 size_t queue_left(const struct chart *c, const struct results *s);
 
 /* Makes them. The results are written whole after each, so that whatever ends us loses one run at

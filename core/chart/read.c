@@ -192,8 +192,6 @@ int chart_read(struct chart *c, const char *path, const char *const *only, size_
         try_sets(c, e) || chart_read_axes(c, e) || read_error(c, e) || read_limits(c, e) ||
         chart_expand(c, only, n_only, e) || chart_read_pictures(c, e) || chart_read_peers(c, e))
         return -1;
-    if (!c->title)
-        c->title = "";
     return 0;
 }
 

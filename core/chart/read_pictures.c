@@ -124,13 +124,14 @@ static int read_name(struct chart *c, struct chart_picture *p, struct error *e)
 
 static int read_picture(struct chart *c, struct chart_picture *p, struct error *e)
 {
-    static const char *const keys[] = {"name", "kind", "x", "y", "series", "select"};
+    static const char *const keys[] = {"name", "title", "kind", "x", "y", "series", "select"};
     static const char *const kinds[] = {"cost", "convergence", "map"};
     const struct document *d = &c->doc;
     const char *kind = NULL;
     char hint[128];
     size_t k = 0;
     if (json_keys(d, p->node, keys, COUNT(keys), e) || read_name(c, p, e) ||
+        json_string(d, p->node, "title", false, &p->title, e) ||
         json_string(d, p->node, "kind", true, &kind, e))
         return -1;
     while (k < COUNT(kinds) && strcmp(kind, kinds[k]) != 0)
@@ -158,6 +159,7 @@ int chart_read_pictures(struct chart *c, struct error *e)
     {
         struct chart_picture *p = &c->picture[c->n_picture++];
         p->node = item;
+        p->title = c->title ? c->title : "";
         if (read_picture(c, p, e))
             return -1;
     }

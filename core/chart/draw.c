@@ -234,11 +234,24 @@ static cairo_status_t to_stream(void *stream, const unsigned char *data, unsigne
     return fwrite(data, 1, n, stream) == n ? CAIRO_STATUS_SUCCESS : CAIRO_STATUS_WRITE_ERROR;
 }
 
+/* cairo numbers its surfaces, those of glyphs as well, through the process: nothing refers to this one,
+ * and without its number the same picture is the same file. */
+static void drop_number(char *drawn)
+{
+    static const char mark[] = " id=\"surface";
+    char *at = strstr(drawn, mark);
+    char *close = at ? strchr(at + sizeof mark, '"') : NULL;
+    if (close)
+        memmove(at, close + 1, strlen(close + 1) + 1);
+}
+
 /* What cairo drew, with the texts before its end. */
-static int join(const struct output *o, const char *name, const char *drawn, size_t n,
-                const char *texts, struct error *e)
+static int join(const struct output *o, const char *name, char *drawn, const char *texts,
+                struct error *e)
 {
     static const char end[] = "</svg>";
+    drop_number(drawn);
+    const size_t n = strlen(drawn);
     size_t at = n;
     while (at > 0 && strncmp(drawn + at, end, sizeof end - 1) != 0)
         at--;
@@ -282,7 +295,7 @@ static int write_svg(const struct sheet *layout, const struct output *o, const c
         result = error_set(e, EXIT_RUN, "cannot draw %s: %s", name,
                            cairo_status_to_string(status ? status : CAIRO_STATUS_NO_MEMORY));
     else
-        result = join(o, name, text, size, texts, e);
+        result = join(o, name, text, texts, e);
     free(text);
     free(texts);
     return result;

@@ -309,7 +309,7 @@ const char *plot_failures(const struct plot *q, char *out, size_t size)
     return out;
 }
 
-/* What "select" pins: "; kernel = wendland-c2". */
+/* What "select" pins: "; AXIS = LABEL". */
 static void put_selected(const struct plot *q, char *out, size_t size)
 {
     size_t at = strlen(out);

@@ -211,13 +211,13 @@ expect("a crash", rows("crash")[0]["status"] == "crash" and "crashed" in rows("c
 
 done = run(chart, out="whole")
 random.seed(4)
-kills = 0
+kills = partial = 0
 for attempt in range(60):
     path = scenes.write(chart, "some.chart.json")
     process = subprocess.Popen([SPH, "chart", path, "--out", os.path.join(top, "killed")], cwd=top,
                                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     try:
-        said = process.communicate(timeout=random.uniform(0.01, 0.35))[1]
+        said = process.communicate(timeout=random.uniform(0.01, 0.1 + 0.02 * attempt))[1]
         expect("the last one ends well", process.returncode == 0, said)
         break
     except subprocess.TimeoutExpired:
@@ -225,13 +225,15 @@ for attempt in range(60):
         process.communicate()
         kills += 1
         if os.path.exists(os.path.join(top, "killed/results.csv")):
-            rows("killed")
+            partial += 0 < len(rows("killed")) < 6  # whole whenever it is read
+    if kills >= 12 and partial >= 3:
+        break
 for _ in range(100):
     if not processes(os.path.join(top, "killed")):
         break
     time.sleep(0.05)
 expect("no child outlives it", not processes(os.path.join(top, "killed")))
-expect("killed", kills >= 3, kills)
+expect("killed", kills >= 3 and partial >= 1, (kills, partial))
 done = run(chart, out="killed")
 expect("the same results", without_timing("killed") == without_timing("whole"))
 expect("nothing is left over", not leftovers("killed"), leftovers("killed"))
@@ -400,5 +402,5 @@ expect("keys of the manual", page == set(schema["properties"]), page ^ set(schem
 done = scenes.command("chart", os.path.join(EXAMPLES, "sod.chart.json"), "--list")
 expect("the example", done.returncode == 0 and done.stdout.count("particles=") >= 16, done.stderr)
 
-print(f"{kills} kills, {len(wrong)} wrong charts")
+print(f"{kills} kills, {partial} of them with some results, {len(wrong)} wrong charts")
 scenes.end()

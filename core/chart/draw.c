@@ -172,10 +172,8 @@ static int lay_out(struct sheet *s, struct error *e)
     /* Sizes do not depend on where the plot stands: once to know them, then the head's height. */
     if (map && map_lay_out(s, e))
         return -1;
-    if (!map) {
+    if (!map)
         plot_lay_out(s);
-        legend_draw(s);
-    }
     s->width = s->right + s->right_width + AIR;
     s->width = fmax(s->width, 2 * AIR + sheet_text(s, 0, 0, FONT_TITLE, INK, true, s->q->p->title));
     for (size_t i = 0; i < s->q->n_series; i++)
@@ -289,7 +287,8 @@ static int write_svg(const struct sheet *layout, const struct output *o, const c
     cairo_status_t status = CAIRO_STATUS_NO_MEMORY;
     if (stream && s.texts)
         status = draw_svg(&s, stream);
-    const bool closed = (!stream || fclose(stream) == 0) & (!s.texts || fclose(s.texts) == 0);
+    bool closed = !stream || fclose(stream) == 0;
+    closed = (!s.texts || fclose(s.texts) == 0) && closed;
     int result = 0;
     if (status || !closed)
         result = error_set(e, EXIT_RUN, "cannot draw %s: %s", name,

@@ -94,7 +94,8 @@ static double put_failed(struct sheet *s, double y)
     snprintf(text, sizeof text, "failed: %s", s->q->failures);
     widen(s, TEXT + sheet_text(s, s->right + TEXT, y + 11, FONT, INK, false, text));
     widen(s, TEXT + sheet_text(s, s->right + TEXT, y + 25, FONT_SMALL, GREY, false,
-                               "where their cost had come to"));
+                               s->q->p->x_axis == SIZE_MAX ? "where their cost had come to"
+                                                           : "at their place on the axis"));
     return y + 32;
 }
 

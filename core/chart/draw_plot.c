@@ -6,8 +6,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PLOT_WIDTH 600.0
-#define PLOT_HEIGHT 460.0
+#define PLOT_HEIGHT 460.0 /* [pixel]; more beside a long legend */
+#define PLOT_HEIGHT_MOST 760.0
+#define PLOT_ASPECT 1.3
 #define RADIUS 4.5
 
 /* Okabe and Ito 2008, "Color universal design": told apart by all; black comes last. */
@@ -28,8 +29,9 @@ double plot_y(const struct sheet *s, double value)
 
 void plot_lay_out(struct sheet *s)
 {
-    s->w = PLOT_WIDTH;
-    s->h = PLOT_HEIGHT;
+    legend_draw(s); /* for its height */
+    s->h = floor(fmin(fmax(PLOT_HEIGHT, s->right_height - 48), PLOT_HEIGHT_MOST));
+    s->w = floor(PLOT_ASPECT * s->h);
     ticks_make(&s->x, s->q->low[0], s->q->high[0], true, 9);
     ticks_make(&s->y, s->q->low[1], s->q->high[1], true, 9);
     sheet_font(s, FONT, false);
@@ -37,7 +39,7 @@ void plot_lay_out(struct sheet *s)
     for (int i = 0; i < s->y.n; i++)
         widest = fmax(widest, sheet_width(s, s->y.text[i]));
     s->left = floor(AIR + 24 + widest + 10);
-    s->right = s->left + s->w + 20;
+    s->right = s->left + s->w + 34;
 }
 
 /* -- Series ------------------------------------------------------------------------------------------ */
@@ -174,26 +176,44 @@ static void draw_front(struct sheet *s)
     cairo_set_line_join(s->cr, CAIRO_LINE_JOIN_MITER);
 }
 
-/* Numbers to the lower left of the members, where no point of ours can be. Members too close to each
- * other have one number together: "3-5". */
-static void draw_numbers(struct sheet *s)
+/* Members of the front with one label: its text and the upper right corner of it. */
+struct number {
+    size_t first, last;
+    char text[48];
+    double x, y, width;
+};
+
+/* To the lower left of its members, where no point of ours can be. */
+static void place_number(const struct sheet *s, struct number *n)
 {
     const struct plot *q = s->q;
-    const size_t n = q->n_front < PLOT_FRONT_MOST ? q->n_front : PLOT_FRONT_MOST;
-    for (size_t i = 0, next; i < n; i = next) {
-        double x = plot_x(s, q->x[q->front[i]]), y = plot_y(s, q->y[q->front[i]]);
-        for (next = i + 1; next < n; next++) {
-            const double dx = plot_x(s, q->x[q->front[next]]) - x;
-            const double dy = plot_y(s, q->y[q->front[next]]) - y;
-            if (dx > 26 || dy > 14)
-                break;
+    snprintf(n->text, sizeof n->text, n->last > n->first ? "%zu–%zu" : "%zu", n->first + 1,
+             n->last + 1);
+    n->width = sheet_width(s, n->text);
+    n->x = fmax(plot_x(s, q->x[q->front[n->first]]) - 8, s->left + 4 + n->width);
+    n->y = fmin(plot_y(s, q->y[q->front[n->last]]) + 8, s->top + s->h - 12);
+}
+
+static bool overlap(const struct number *a, const struct number *b)
+{
+    return a->x > b->x - b->width - 4 && b->x > a->x - a->width - 4 && fabs(a->y - b->y) < 13;
+}
+
+/* Members too close to each other have one label together: "3–5". */
+static void draw_numbers(struct sheet *s)
+{
+    struct number number[PLOT_FRONT_MOST];
+    size_t n = 0;
+    for (size_t i = 0; i < s->q->n_front && i < PLOT_FRONT_MOST; i++) {
+        number[n] = (struct number){.first = i, .last = i};
+        place_number(s, &number[n++]);
+        for (; n > 1 && overlap(&number[n - 2], &number[n - 1]); n--) {
+            number[n - 2].last = number[n - 1].last;
+            place_number(s, &number[n - 2]);
         }
-        char text[48];
-        snprintf(text, sizeof text, next > i + 1 ? "%zu–%zu" : "%zu", i + 1, next);
-        x = fmax(x - 8, s->left + 4 + sheet_width(s, text));
-        y = fmin(plot_y(s, q->y[q->front[next - 1]]) + 8, s->top + s->h - 12);
-        sheet_put(s, x, y, 1, 1, text);
     }
+    for (size_t i = 0; i < n; i++)
+        sheet_put(s, number[i].x, number[i].y, 1, 1, number[i].text);
 }
 
 /* -- Axes -------------------------------------------------------------------------------------------- */

@@ -32,6 +32,8 @@ const char *plot_measure(const char *name)
 
 static double x_of(const struct plot *q, size_t run)
 {
+    if (q->p->kind == CHART_MAP)
+        return 1; /* a cell has no place on an axis of numbers */
     if (q->p->x_axis == SIZE_MAX)
         return row_measure(&q->s->row[run], q->p->x);
     return q->c->axis[q->p->x_axis].value[q->c->run[run].value[q->p->x_axis]].number;

@@ -5,7 +5,7 @@
 
 #include "chart/results.h"
 
-#define PLOT_FRONT_MOST 24 /* members of the front that are named */
+#define PLOT_FRONT_MOST 40 /* members of the front that are named */
 
 struct plot_series {
     char label[160], note[120];

@@ -259,6 +259,17 @@ int output_clear(const struct output *o, struct error *e)
     return result;
 }
 
+void output_sweep(const struct output *o)
+{
+    DIR *folder = opendir(o->dir);
+    const struct dirent *entry;
+    while (folder && (entry = readdir(folder)))
+        if (starts_with(entry->d_name, ASIDE_PREFIX))
+            unlinkat(dirfd(folder), entry->d_name, 0);
+    if (folder)
+        closedir(folder);
+}
+
 /* -- Files written whole ----------------------------------------------------------------------- */
 
 char *output_path(const struct output *o, const char *name)

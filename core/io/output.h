@@ -21,6 +21,8 @@ int output_open(struct output *o, const char *dir, struct error *e);
 /* The two halves of it: a run that resumes claims and does not clear. */
 int output_claim(struct output *o, const char *dir, struct error *e);
 int output_clear(const struct output *o, struct error *e);
+/* Removes what killed writers left in a claimed folder: files aside that came to no name. */
+void output_sweep(const struct output *o);
 /* Gives the claim back. Nothing on an `o` that was never opened and is zeros. */
 void output_close(struct output *o);
 /* "DIR/name" into fresh memory; NULL when out of memory. */

@@ -125,6 +125,9 @@ static int after_step(struct loop *l, struct error *e)
                          (unsigned long long)r->step, r->time);
     if (logged && loop_log(l, e))
         return -1;
+    if (!last && measures_due(&l->measures) &&
+        (run_settle(r, e) || measures_take(&l->measures, MEASURES_ON_THE_WAY, e)))
+        return -1;
     while (by_time && l->next_log <= r->time)
         l->next_log += l->scene->output.log_every;
     if (!last && r->time >= target(l)) {
@@ -149,7 +152,7 @@ static int steps(struct loop *l, struct error *e)
     l->next_output = 1;
     l->next_log =
         isfinite(l->scene->output.log_every) ? l->begin + l->scene->output.log_every : INFINITY;
-    if (loop_log(l, e) || loop_snapshot(l, e))
+    if (loop_log(l, e) || loop_snapshot(l, e) || measures_take(&l->measures, MEASURES_START, e))
         return -1;
     while (!finished(l))
         if (one_step(l, e) || after_step(l, e))
@@ -161,6 +164,8 @@ static int steps(struct loop *l, struct error *e)
         if (run_passes(r, MOMENT_EVALUATE, e))
             return -1;
     }
+    if (measures_take(&l->measures, MEASURES_END, e))
+        return -1;
     r->cost.loop = omp_get_wtime() - begin - (r->cost.io - io);
     return loop_snapshot(l, e);
 }
@@ -180,6 +185,8 @@ static int loop_begin(struct loop *l, struct plan *plan, struct error *e)
     char *path = output_path(l->out, "log.csv");
     int status = path ? log_open(&l->log, path, plan->dim, e) : error_memory(e, "a path", 1);
     free(path);
+    if (!status)
+        status = measures_open(&l->measures, &l->run, l->out, false, e);
     progress_start(&l->progress, l->options->progress, l->begin, l->end);
     return status;
 }
@@ -204,6 +211,8 @@ int loop_run(struct plan *plan, const struct output *out, const struct loop_opti
     if (!status)
         status = log_close(&l.log, e);
     if (!status)
+        status = measures_close(&l.measures, e);
+    if (!status)
         status = loop_draw(&l, e);
     if (!status)
         status = loop_summarise(&l, o->stop && *o->stop ? "stopped" : "done", NULL, e);
@@ -211,6 +220,8 @@ int loop_run(struct plan *plan, const struct output *out, const struct loop_opti
         keep_failed(&l, e);
     struct error ignored = {0};
     log_close(&l.log, &ignored);
+    measures_close(&l.measures, &ignored);
+    measures_free(&l.measures);
     run_free(&l.run);
     free(l.picture);
     cJSON_free(l.scene_text);

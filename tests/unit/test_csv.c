@@ -127,8 +127,7 @@ static void takes_back_what_is_not_whole(void **state)
 int main(void)
 {
 #define TEST(f) cmocka_unit_test_setup_teardown(f, scratch_setup, scratch_teardown)
-    const struct CMUnitTest tests[] = {
-        TEST(is_written_whole), TEST(is_cut_and_gone_on_with),
-        TEST(is_read_back), TEST(takes_back_what_is_not_whole)};
+    const struct CMUnitTest tests[] = {TEST(is_written_whole), TEST(is_cut_and_gone_on_with),
+                                       TEST(is_read_back), TEST(takes_back_what_is_not_whole)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -12,7 +12,7 @@
 
 static const char *const array_name[] = {"fluid", "wall"};
 static const uint64_t array_n[] = {10000, 400};
-#define ERROR(FIELD, REFERENCE, L1, L1_REL, L2, LINF, N)                                            \
+#define ERROR(FIELD, REFERENCE, L1, L1_REL, L2, LINF, N)                                           \
     {                                                                                              \
         .field = FIELD, .reference = REFERENCE, .l1 = L1, .l1_rel = L1_REL, .l2 = L2,              \
         .linf = LINF, .n = N, .time = (double)NAN                                                  \

@@ -125,12 +125,17 @@ int csv_commit(struct csv *c, struct error *e)
     return 0;
 }
 
+int csv_sync(struct csv *c, struct error *e)
+{
+    if (c->file && fsync(fileno(c->file)) && errno != EINVAL && errno != EROFS)
+        return cannot(e, c->path, errno);
+    return 0;
+}
+
 int csv_close(struct csv *c, struct error *e)
 {
-    int result = 0;
+    int result = csv_sync(c, e);
     if (c->file) {
-        if (fsync(fileno(c->file)) && errno != EINVAL && errno != EROFS)
-            result = cannot(e, c->path, errno);
         if (fclose(c->file) && result == 0)
             result = cannot(e, c->path, errno);
     }
@@ -141,7 +146,7 @@ int csv_close(struct csv *c, struct error *e)
 
 /* -- Read back --------------------------------------------------------------------------------- */
 
-int csv_cut_after(const char *path, uint64_t step, struct error *e)
+int csv_cut_from(const char *path, uint64_t step, struct error *e)
 {
     FILE *file = fopen(path, "r+e");
     if (!file)
@@ -152,7 +157,7 @@ int csv_cut_after(const char *path, uint64_t step, struct error *e)
     ssize_t n;
     bool head = true;
     while ((n = getline(&line, &size, file)) > 0 && line[n - 1] == '\n') {
-        if (!head && strtoull(line, NULL, 10) > step)
+        if (!head && strtoull(line, NULL, 10) >= step)
             break;
         head = false;
         keep += n;

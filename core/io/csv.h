@@ -34,12 +34,14 @@ void csv_end_row(struct csv *c);
 /* What was put since the last commit goes to disk, whole. If it cannot (disk full) it is taken back, so that
  * the file ends with a good row. */
 int csv_commit(struct csv *c, struct error *e);
+/* What has been committed is on disk. */
+int csv_sync(struct csv *c, struct error *e);
 /* Syncs and closes. Nothing on one that was never opened and is zeros. */
 int csv_close(struct csv *c, struct error *e);
 
-/* Rows of later steps than `step`, and a row that is not whole, are cut off: for a run that goes on from an
- * earlier state. A file that is not there is left so. */
-int csv_cut_after(const char *path, uint64_t step, struct error *e);
+/* Rows from this step on, and one that a killed run has left half written, are cut off: for a run that goes on
+ * from an earlier state. A file that is not there is left so. */
+int csv_cut_from(const char *path, uint64_t step, struct error *e);
 /* Two columns by name, of rows that csv_* wrote (NaN included); freed by the caller. */
 int csv_read_two(const char *path, const char *const name[2], double *value[2], size_t *n,
                  struct error *e);

@@ -16,6 +16,15 @@ int log_open(struct log *l, const char *path, int dim, struct error *e)
     return csv_open(&l->csv, path, CSV_OVER, e);
 }
 
+int log_append(struct log *l, const char *path, int dim, struct error *e)
+{
+    *l = (struct log){.dim = dim};
+    if (csv_open(&l->csv, path, CSV_GO_ON, e))
+        return -1;
+    l->header_done = l->csv.good > 0;
+    return 0;
+}
+
 static const char axis[] = "xyz";
 
 /* Angular momentum has no component in 1D, one in 2D, three in 3D. */

@@ -29,6 +29,8 @@ struct log {
     int dim;
 };
 int log_open(struct log *l, const char *path, int dim, struct error *e);
+/* The same, but rows come behind those that are there. */
+int log_append(struct log *l, const char *path, int dim, struct error *e);
 /* Columns: step, time, dt, kinetic, internal, potential, momentum_x ..., angular_z (2D) or
  * angular_x ... (3D), mass, the extras by name, wall_s. The extras are those of the first row. */
 int log_write(struct log *l, const struct log_row *row, struct error *e);

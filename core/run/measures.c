@@ -19,6 +19,7 @@ static double tick(const struct measures *m, const struct series *s)
     return m->begin + ((double)s->next - NEARLY) * s->when->every;
 }
 
+/* The next of the times that are listed has come. */
 static bool listed(const struct measures *m, const struct series *s, double time)
 {
     return s->next_at < s->when->n_at &&
@@ -32,12 +33,12 @@ static bool is_due(const struct measures *m, const struct series *s)
            (steps && m->run->step % steps == 0) || listed(m, s, m->run->time);
 }
 
-/* The moments that have come are behind. */
-static void passed(const struct measures *m, struct series *s)
+/* The moments that have come until then are behind. */
+static void passed(const struct measures *m, struct series *s, double time)
 {
-    while (isfinite(s->when->every) && m->run->time >= tick(m, s))
+    while (isfinite(s->when->every) && time >= tick(m, s))
         s->next++;
-    while (listed(m, s, m->run->time))
+    while (listed(m, s, time))
         s->next_at++;
 }
 
@@ -68,7 +69,7 @@ static int open_file(struct measures *m, struct csv *csv, const char *name, bool
     char *path = output_path(m->out, name);
     if (!path)
         return error_memory(e, "a path", strlen(name));
-    int status = resumed ? csv_cut_after(path, m->run->step, e) : 0;
+    int status = resumed ? csv_cut_from(path, m->run->step, e) : 0;
     if (!status)
         status = csv_open(csv, path, resumed ? CSV_GO_ON : CSV_NEW, e);
     free(path);
@@ -204,7 +205,7 @@ int measures_open(struct measures *m, struct run *r, const struct output *out, b
         struct series *list;
         const size_t n = n_series(m, &list, kind);
         for (size_t i = 0; i < n; i++)
-            passed(m, &list[i]);
+            passed(m, &list[i], r->time - r->dt);
     }
     return status;
 }
@@ -438,13 +439,25 @@ int measures_take(struct measures *m, enum measures_moment moment, struct error 
                                                       : is_due(m, &list[i])))
                 continue;
             status = take_one(m, kind, i, end, e);
-            passed(m, &list[i]);
+            passed(m, &list[i], m->run->time);
             list[i].last = m->run->step;
         }
     }
     if (!status && end)
         status = finish(m, e);
     m->run->cost.io += omp_get_wtime() - started;
+    return status;
+}
+
+int measures_sync(struct measures *m, struct error *e)
+{
+    int status = csv_sync(&m->errors, e);
+    for (int kind = 0; m->any && kind < 3; kind++) {
+        struct series *list;
+        const size_t n = n_series(m, &list, kind);
+        for (size_t i = 0; i < n && !status; i++)
+            status = csv_sync(&list[i].csv, e);
+    }
     return status;
 }
 

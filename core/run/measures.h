@@ -51,8 +51,8 @@ struct measures {
 
 enum measures_moment { MEASURES_START, MEASURES_ON_THE_WAY, MEASURES_END };
 
-/* Opens the files. resumed: the run stands at a later step, whose files are there: rows behind that step are
- * cut off, and further ones added. */
+/* Opens the files. resumed: the run stands at a step of which nothing was written yet: rows of that step and
+ * later ones are cut off from files that are there, and the step's own are due again. */
 int measures_open(struct measures *m, struct run *r, const struct output *out, bool resumed,
                   struct error *e);
 /* Whether there is anything to take of the step that has just been made; if so, settle the run and take it. */
@@ -60,6 +60,8 @@ bool measures_due(const struct measures *m);
 int measures_take(struct measures *m, enum measures_moment moment, struct error *e);
 /* After the end was taken: into the summary, which points into the measures. */
 void measures_summary(const struct measures *m, struct summary *s);
+/* What was written is on disk. */
+int measures_sync(struct measures *m, struct error *e);
 int measures_close(struct measures *m, struct error *e);
 void measures_free(struct measures *m);
 

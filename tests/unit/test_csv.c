@@ -60,7 +60,7 @@ static void is_cut_and_gone_on_with(void **state)
     const char *path = scratch_path(state, "a.csv");
     struct csv c;
     struct error e = {0};
-    assert_int_equal(csv_cut_after(path, 3, &e), 0); /* not there */
+    assert_int_equal(csv_cut_from(path, 3, &e), 0); /* not there */
     assert_int_equal(csv_open(&c, path, CSV_OVER, &e), 0);
     put_head(&c);
     for (uint64_t step = 0; step < 10; step += 2)
@@ -69,8 +69,9 @@ static void is_cut_and_gone_on_with(void **state)
     fputs("10,3.", c.file); /* killed in the midst */
     assert_int_equal(csv_commit(&c, &e), 0);
     assert_int_equal(csv_close(&c, &e), 0);
-    assert_int_equal(csv_cut_after(path, 100, &e), 0);
-    assert_int_equal(csv_cut_after(path, 5, &e), 0);
+    assert_int_equal(csv_cut_from(path, 100, &e), 0);
+    assert_int_equal(csv_cut_from(path, 6, &e), 0);
+    assert_int_equal(csv_cut_from(path, 5, &e), 0);
     assert_int_equal(csv_open(&c, path, CSV_GO_ON, &e), 0);
     assert_int_equal(c.rows, 7);
     put_row(&c, 6, 3, 0);

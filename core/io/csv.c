@@ -125,6 +125,27 @@ int csv_commit(struct csv *c, struct error *e)
     return 0;
 }
 
+int csv_head(struct csv *c, const char *line, struct error *e)
+{
+    if (c->good == 0) {
+        fputs(line, c->file);
+        c->rows++;
+        return csv_commit(c, e);
+    }
+    char *there = NULL;
+    size_t size = 0;
+    FILE *file = fopen(c->path, "re");
+    const bool same = file && getline(&there, &size, file) > 0 && strcmp(there, line) == 0;
+    if (file)
+        fclose(file);
+    free(there);
+    return same ? 0
+                : error_set(e, EXIT_USAGE,
+                            "%s has other columns than the scene asks for: choose another output "
+                            "folder",
+                            c->path);
+}
+
 int csv_sync(struct csv *c, struct error *e)
 {
     if (c->file && fsync(fileno(c->file)) && errno != EINVAL && errno != EROFS)

@@ -25,6 +25,8 @@ struct csv {
 };
 
 int csv_open(struct csv *c, const char *path, enum csv_mode mode, struct error *e);
+/* The line of names: put into an empty file; what is gone on with must have the same. */
+int csv_head(struct csv *c, const char *line, struct error *e);
 /* Cells, one after the other; a number has 17 digits: what is read back is what was. */
 void csv_name(struct csv *c, const char *name);
 void csv_count(struct csv *c, uint64_t value);

@@ -63,34 +63,6 @@ bool measures_due(const struct measures *m)
 
 /* -- Files ------------------------------------------------------------------------------------- */
 
-static int open_file(struct measures *m, struct csv *csv, const char *name, bool resumed,
-                     struct error *e)
-{
-    char *path = output_path(m->out, name);
-    if (!path)
-        return error_memory(e, "a path", strlen(name));
-    int status = resumed ? csv_cut_from(path, m->run->step, e) : 0;
-    if (!status)
-        status = csv_open(csv, path, resumed ? CSV_GO_ON : CSV_NEW, e);
-    free(path);
-    if (!status && csv->good == 0) {
-        csv_name(csv, "step");
-        csv_name(csv, "time");
-    }
-    return status;
-}
-
-static int open_series(struct measures *m, struct series *s, const char *prefix, const char *name,
-                       bool resumed, struct error *e)
-{
-    char *part = scene_file_part(name);
-    s->file = part ? text_format("%s_%s.csv", prefix, part) : NULL;
-    free(part);
-    s->on_file = s->file != NULL;
-    return s->file ? open_file(m, &s->csv, s->file, resumed, e)
-                   : error_memory(e, "a file's name", strlen(name));
-}
-
 static void put_names(struct csv *csv, const char *const *name, size_t n)
 {
     for (size_t i = 0; i < n; i++)
@@ -99,23 +71,86 @@ static void put_names(struct csv *csv, const char *const *name, size_t n)
 
 static const char *const coordinate[] = {"x", "y", "z", "r"};
 
-static int open_errors(struct measures *m, bool resumed, struct error *e)
+static void errors_head(const struct measures *m, size_t i, struct csv *to)
 {
     static const char *const names[] = {"array", "field",  "reference", "l1", "l1_rel",
                                         "l2",    "l2_rel", "linf",      "n",  "outside"};
+    (void)m;
+    (void)i;
+    put_names(to, names, sizeof names / sizeof *names);
+}
+
+static void probe_head(const struct measures *m, size_t i, struct csv *to)
+{
+    const struct scene_probe *p = &m->run->plan->scene->probe[i];
+    const bool points = p->kind == PROBE_POINTS;
+    if (points)
+        csv_name(to, "point");
+    put_names(to, coordinate, points ? (size_t)m->run->plan->dim : 0);
+    put_names(to, m->name[i], points ? p->sample.n_of + 1 : 1);
+}
+
+static void profile_head(const struct measures *m, size_t i, struct csv *to)
+{
+    const struct scene_profile *p = &m->run->plan->scene->profile[i];
+    char deviation[256];
+    csv_name(to, p->bins ? coordinate[p->along] : "s");
+    put_names(to, coordinate, p->bins ? 0 : (size_t)m->run->plan->dim);
+    for (size_t k = 0; k < p->sample.n_of; k++) {
+        snprintf(deviation, sizeof deviation, "%s.std", p->sample.of[k]);
+        csv_name(to, p->sample.of[k]);
+        if (p->bins)
+            csv_name(to, deviation);
+    }
+    csv_name(to, p->bins ? "n" : "sum");
+}
+
+typedef void put_head(const struct measures *m, size_t i, struct csv *to);
+
+static int open_file(struct measures *m, struct csv *csv, const char *name, bool resumed,
+                     put_head *put, size_t i, struct error *e)
+{
+    char *path = output_path(m->out, name), *line = NULL;
+    size_t length = 0;
+    struct csv head = {.file = open_memstream(&line, &length)};
+    int status = path && head.file ? 0 : error_memory(e, "a path", strlen(name));
+    if (!status && resumed)
+        status = csv_cut_from(path, m->run->step, e);
+    if (!status)
+        status = csv_open(csv, path, resumed ? CSV_GO_ON : CSV_NEW, e);
+    if (!status) {
+        csv_name(&head, "step");
+        csv_name(&head, "time");
+        put(m, i, &head);
+        csv_end_row(&head);
+    }
+    if (head.file && fclose(head.file) && !status)
+        status = error_memory(e, name, 0);
+    if (!status)
+        status = csv_head(csv, line, e);
+    free(line);
+    free(path);
+    return status;
+}
+
+static int open_series(struct measures *m, struct series *s, const char *prefix, const char *name,
+                       bool resumed, put_head *put, size_t i, struct error *e)
+{
+    char *part = scene_file_part(name);
+    s->file = part ? text_format("%s_%s.csv", prefix, part) : NULL;
+    free(part);
+    s->on_file = s->file != NULL;
+    return s->file ? open_file(m, &s->csv, s->file, resumed, put, i, e)
+                   : error_memory(e, "a file's name", strlen(name));
+}
+
+static int open_errors(struct measures *m, bool resumed, struct error *e)
+{
     const struct scene *s = m->run->plan->scene;
     bool wanted = false;
     for (size_t i = 0; i < s->n_compare; i++)
         wanted = wanted || moments_any(&s->compare[i].when);
-    if (!wanted)
-        return 0;
-    if (open_file(m, &m->errors, "errors.csv", resumed, e))
-        return -1;
-    if (m->errors.good)
-        return 0;
-    put_names(&m->errors, names, sizeof names / sizeof *names);
-    csv_end_row(&m->errors);
-    return csv_commit(&m->errors, e);
+    return wanted ? open_file(m, &m->errors, "errors.csv", resumed, errors_head, 0, e) : 0;
 }
 
 static int open_probe(struct measures *m, size_t i, bool resumed, struct error *e)
@@ -123,7 +158,6 @@ static int open_probe(struct measures *m, size_t i, bool resumed, struct error *
     const struct scene_probe *p = &m->run->plan->scene->probe[i];
     const bool points = p->kind == PROBE_POINTS;
     const size_t width = points ? p->sample.n_of + 1 : 1;
-    struct series *s = &m->probe[i];
     m->value[i] = calloc(width * (points ? p->sample.n_point : 1), sizeof *m->value[i]);
     m->name[i] = calloc(width + 1, sizeof *m->name[i]);
     if (!m->value[i] || !m->name[i])
@@ -131,43 +165,15 @@ static int open_probe(struct measures *m, size_t i, bool resumed, struct error *
     for (size_t k = 0; k + 1 < width; k++)
         m->name[i][k] = p->sample.of[k];
     m->name[i][width - 1] = points ? "sum" : "value";
-    if (!points && !moments_any(&p->when))
-        return 0;
-    if (open_series(m, s, "probe", p->name, resumed, e))
-        return -1;
-    if (s->csv.good)
-        return 0;
-    if (points) {
-        csv_name(&s->csv, "point");
-        put_names(&s->csv, coordinate, (size_t)m->run->plan->dim);
-    }
-    put_names(&s->csv, m->name[i], width);
-    csv_end_row(&s->csv);
-    return csv_commit(&s->csv, e);
+    return points || moments_any(&p->when)
+               ? open_series(m, &m->probe[i], "probe", p->name, resumed, probe_head, i, e)
+               : 0;
 }
 
 static int open_profile(struct measures *m, size_t i, bool resumed, struct error *e)
 {
-    const struct scene_profile *p = &m->run->plan->scene->profile[i];
-    struct series *s = &m->profile[i];
-    if (open_series(m, s, "profile", p->name, resumed, e))
-        return -1;
-    if (s->csv.good)
-        return 0;
-    csv_name(&s->csv, p->bins ? coordinate[p->along] : "s");
-    put_names(&s->csv, coordinate, p->bins ? 0 : (size_t)m->run->plan->dim);
-    for (size_t k = 0; k < p->sample.n_of; k++) {
-        char *std = text_format("%s.std", p->sample.of[k]);
-        if (!std)
-            return error_memory(e, "a profile", 1);
-        csv_name(&s->csv, p->sample.of[k]);
-        if (p->bins)
-            csv_name(&s->csv, std);
-        free(std);
-    }
-    csv_name(&s->csv, p->bins ? "n" : "sum");
-    csv_end_row(&s->csv);
-    return csv_commit(&s->csv, e);
+    return open_series(m, &m->profile[i], "profile", m->run->plan->scene->profile[i].name, resumed,
+                       profile_head, i, e);
 }
 
 int measures_open(struct measures *m, struct run *r, const struct output *out, bool resumed,

@@ -74,6 +74,9 @@ static void is_cut_and_gone_on_with(void **state)
     assert_int_equal(csv_cut_from(path, 5, &e), 0);
     assert_int_equal(csv_open(&c, path, CSV_GO_ON, &e), 0);
     assert_int_equal(c.rows, 7);
+    assert_int_equal(csv_head(&c, HEAD, &e), 0);
+    assert_int_equal(csv_head(&c, "step,time\n", &e), -1);
+    assert_non_null(strstr(e.text, "other columns"));
     put_row(&c, 6, 3, 0);
     assert_int_equal(csv_commit(&c, &e), 0);
     assert_int_equal(c.rows, 8);

@@ -263,12 +263,14 @@ for snapshot in (snapshots[2], snapshots[4]):
         row = errors_at(snapshot.step, field, "ref.csv")
         wanted = norms(volume[inside], (value - star)[inside], star[inside])
         near(f"table, {field}, t = {snapshot.time}", [row[name] for name in NORMS], wanted)
+        expect("which comparison", row["compare"] == 0 and row["array"] == "fluid", row)
         expect("beyond the ends", row["outside"] == (half & (r > 0.8)).sum() > 0, row)
         if snapshot is snapshots[4]:
             end = summary["errors"]["fluid." + field]
             near(f"summary, {field}", [end[name] for name in NORMS], wanted)
             worst = x[inside][numpy.abs(value - star)[inside].argmax()]
             near("where it is largest", numpy.abs(end["linf_at"]), numpy.abs(worst))
+            near("and in its row", [row["linf_x"], row["linf_y"]], end["linf_at"], 0)
             expect("reference", end["reference"] == "ref.csv" and "time" not in end, end)
 
 timed = summary["errors"]["fluid.rho@scene"]

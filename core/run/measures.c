@@ -71,13 +71,16 @@ static void put_names(struct csv *csv, const char *const *name, size_t n)
 
 static const char *const coordinate[] = {"x", "y", "z", "r"};
 
+/* measures_restore.c reads these columns. */
 static void errors_head(const struct measures *m, size_t i, struct csv *to)
 {
-    static const char *const names[] = {"array", "field",  "reference", "l1", "l1_rel",
-                                        "l2",    "l2_rel", "linf",      "n",  "outside"};
-    (void)m;
+    static const char *const names[] = {"compare", "array",  "field",  "reference",
+                                        "l1",      "l1_rel", "l2",     "l2_rel",
+                                        "linf",    "n",      "outside"};
+    static const char *const at[] = {"linf_x", "linf_y", "linf_z"};
     (void)i;
     put_names(to, names, sizeof names / sizeof *names);
+    put_names(to, at, (size_t)m->run->plan->dim);
 }
 
 static void probe_head(const struct measures *m, size_t i, struct csv *to)
@@ -213,7 +216,7 @@ int measures_open(struct measures *m, struct run *r, const struct output *out, b
         for (size_t i = 0; i < n; i++)
             passed(m, &list[i], r->time - r->dt);
     }
-    return status;
+    return status || (resumed && measures_restore(m, e)) ? -1 : 0;
 }
 
 /* -- Rows -------------------------------------------------------------------------------------- */
@@ -236,18 +239,21 @@ static void put_numbers(struct csv *csv, const double *value, size_t n)
         csv_number(csv, value[i]);
 }
 
-static int put_errors(struct measures *m, const struct measured_errors *all, struct error *e)
+static int put_errors(struct measures *m, size_t compare, struct error *e)
 {
+    const struct measured_errors *all = &m->errors_of[compare];
     for (size_t i = 0; i < all->n; i++) {
         const struct summary_error *q = &all->error[i];
         const double norm[] = {q->l1, q->l1_rel, q->l2, q->l2_rel, q->linf};
         begin_row(m, &m->errors);
+        csv_count(&m->errors, compare);
         csv_name(&m->errors, q->array);
         csv_name(&m->errors, q->field + strlen(q->array) + 1);
         csv_name(&m->errors, q->reference);
         put_numbers(&m->errors, norm, sizeof norm / sizeof *norm);
         csv_count(&m->errors, q->n);
         csv_count(&m->errors, q->outside);
+        put_numbers(&m->errors, q->linf_at, (size_t)m->run->plan->dim);
         csv_end_row(&m->errors);
     }
     return csv_commit(&m->errors, e);
@@ -267,7 +273,7 @@ static int take_compare(struct measures *m, size_t i, bool end, struct error *e)
         return -1;
     for (size_t k = 0; timed && k < q->n; k++)
         q->error[k].time = m->run->time;
-    return moments_any(&c->when) && !is_written(m, &m->compare[i]) ? put_errors(m, q, e) : 0;
+    return moments_any(&c->when) && !is_written(m, &m->compare[i]) ? put_errors(m, i, e) : 0;
 }
 
 static int take_probe(struct measures *m, size_t i, struct error *e)

@@ -55,6 +55,8 @@ enum measures_moment { MEASURES_START, MEASURES_ON_THE_WAY, MEASURES_END };
  * later ones are cut off from files that are there, and the step's own are due again. */
 int measures_open(struct measures *m, struct run *r, const struct output *out, bool resumed,
                   struct error *e);
+/* measures_restore.c: for a run that goes on, what errors.csv holds of tables whose time has passed. */
+int measures_restore(struct measures *m, struct error *e);
 /* Whether there is anything to take of the step that has just been made; if so, settle the run and take it. */
 bool measures_due(const struct measures *m);
 int measures_take(struct measures *m, enum measures_moment moment, struct error *e);

@@ -62,6 +62,7 @@ int scene_reference(struct scene *s, const cJSON *node, const struct scene_momen
 /* Whether the names of two probes give files of one name. */
 bool scene_same_file(const char *a, const char *b);
 int scene_output(struct scene *s, const cJSON *node, struct error *e);
+int scene_watches(struct scene *s, const cJSON *node, struct error *e);
 int scene_time(struct scene *s, const cJSON *node, struct error *e);
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))

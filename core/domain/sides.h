@@ -25,6 +25,9 @@ struct ghosts {
 
 void ghosts_fini(struct ghosts *g);
 
+/* Whether component k of a property (SPH_VECTOR ...) changes sign at a mirror across `axis`. */
+bool sides_turn(uint32_t type, int dim, uint32_t k, int axis);
+
 /* Wraps positions across periodic sides (to min <= x < max) and reflects those that crossed a
  * mirror, however far they went; a reflection turns vectors and tensors too, in every `state`
  * column but x. Positions that are not finite stay as they are. Returns the number of particles

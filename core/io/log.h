@@ -2,7 +2,7 @@
 #ifndef IO_LOG_H
 #define IO_LOG_H
 
-#include "base/error.h"
+#include "io/csv.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -24,13 +24,13 @@ struct log_row {
  * cannot be written whole (disk full) is an error and is taken back, so that the file ends with
  * a good one. */
 struct log {
-    FILE *file;
-    char *path;
+    struct csv csv;
     bool header_done;
     int dim;
-    long good; /* bytes known to be on disk, whole rows */
 };
 int log_open(struct log *l, const char *path, int dim, struct error *e);
+/* The same, but rows come behind those that are there. */
+int log_append(struct log *l, const char *path, int dim, struct error *e);
 /* Columns: step, time, dt, kinetic, internal, potential, momentum_x ..., angular_z (2D) or
  * angular_x ... (3D), mass, the extras by name, wall_s. The extras are those of the first row. */
 int log_write(struct log *l, const struct log_row *row, struct error *e);

@@ -124,6 +124,9 @@ static int after_step(struct loop *l, struct error *e)
                           "the energy is no longer a number");
     if (logged && (watch_energy(r, &l->first, &l->last, e) || loop_log(l, e)))
         return -1;
+    if (!last && measures_due(&l->measures) &&
+        (run_settle(r, e) || measures_take(&l->measures, MEASURES_ON_THE_WAY, e)))
+        return -1;
     watch_step(r);
     while (by_time && l->next_log <= r->time)
         l->next_log += l->scene->output.log_every;
@@ -149,7 +152,7 @@ static int steps(struct loop *l, struct error *e)
     l->next_output = 1;
     l->next_log =
         isfinite(l->scene->output.log_every) ? l->begin + l->scene->output.log_every : INFINITY;
-    if (loop_log(l, e) || loop_snapshot(l, e))
+    if (loop_log(l, e) || loop_snapshot(l, e) || measures_take(&l->measures, MEASURES_START, e))
         return -1;
     while (!finished(l))
         if (one_step(l, e) || after_step(l, e))
@@ -163,6 +166,8 @@ static int steps(struct loop *l, struct error *e)
     } else if (watch_state(r, e)) {
         return -1;
     }
+    if (measures_take(&l->measures, MEASURES_END, e))
+        return -1;
     r->cost.loop = omp_get_wtime() - begin - (r->cost.io - io);
     return loop_snapshot(l, e);
 }
@@ -182,6 +187,8 @@ static int loop_begin(struct loop *l, struct plan *plan, struct error *e)
     char *path = output_path(l->out, "log.csv");
     int status = path ? log_open(&l->log, path, plan->dim, e) : error_memory(e, "a path", 1);
     free(path);
+    if (!status)
+        status = measures_open(&l->measures, &l->run, l->out, false, e);
     progress_start(&l->progress, l->options->progress, l->begin, l->end);
     return status;
 }
@@ -208,6 +215,8 @@ int loop_run(struct plan *plan, const struct output *out, const struct loop_opti
     if (!status)
         status = log_close(&l.log, e);
     if (!status)
+        status = measures_close(&l.measures, e);
+    if (!status)
         status = loop_draw(&l, e);
     if (!status)
         status = loop_summarise(&l, o->stop && *o->stop ? "stopped" : "done", NULL, e);
@@ -215,6 +224,8 @@ int loop_run(struct plan *plan, const struct output *out, const struct loop_opti
         keep_failed(&l, e);
     struct error ignored = {0};
     log_close(&l.log, &ignored);
+    measures_close(&l.measures, &ignored);
+    measures_free(&l.measures);
     run_free(&l.run);
     free(l.picture);
     cJSON_free(l.scene_text);

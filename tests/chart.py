@@ -181,19 +181,19 @@ expect("failures are results", done.returncode == 0, done.stderr)
 table = {(row["axis.case"], row["axis.N"]): row for row in rows("failing")}
 expect("statuses", {key: row["status"] for key, row in table.items()} == {
     ("good", "56"): "done", ("good", "28"): "unstable", ("refused", "56"): "refused", ("tiny", "56"): "dt",
-    ("wild", "56"): "nan", ("endless", "56"): "timeout"}, {key: (row["status"], row["reason"], row["error"])
+    ("wild", "56"): "u", ("endless", "56"): "timeout"}, {key: (row["status"], row["reason"], row["error"])
                                                            for key, row in table.items()})
 for case, words in {("good", "28"): "is above 0.03", ("refused", "56"): "no-such", ("tiny", "56"): "time step",
-                    ("wild", "56"): "not a number", ("endless", "56"): "no end within 1.5 s"}.items():
+                    ("wild", "56"): "became -", ("endless", "56"): "no end within 1.5 s"}.items():
     expect(f"reason of {case}", words in table[case]["reason"], table[case]["reason"])
 late = table["endless", "56"]
 expect("the cost so far of a timeout", 1 < float(late["wall_s"]) < 12 and float(late["particle_updates"]) > 0
        and late["error"] == "", late)
 root, texts = picture("cost", "failing")
 expect("marks at the top", any("6 runs, 5 failed (triangles at the top)" in text for text in texts) and
-       "failed: 1 unstable, 1 nan, 1 dt, 1 timeout, 1 refused" in texts, texts)
+       "failed: 1 unstable, 1 dt, 1 u, 1 timeout, 1 refused" in texts, texts)
 _, texts = picture("map", "failing")
-expect("words in the cells", {"refused", "dt", "nan", "timeout", "unstable", "skipped"} <= set(texts), texts)
+expect("words in the cells", {"refused", "dt", "u", "timeout", "unstable", "skipped"} <= set(texts), texts)
 kept = {row["id"]: row["wall_s"] for row in rows("failing")}
 done = run(changed(failing, limit={"seconds": 1.6}, unstable=0.5), out="failing")
 table = {(row["axis.case"], row["axis.N"]): row for row in rows("failing")}

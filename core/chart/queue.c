@@ -123,9 +123,20 @@ static void sweep(const struct queue *q, bool keep)
 
 /* -- A row from what became of a run ------------------------------------------------------------- */
 
-/* One word for a failure, from its sentence. */
-static enum row_status sort_reason(const char *reason)
+/* One word for a failure: by the cause that the watch of the run tells, else from its sentence. */
+static enum row_status sort_reason(const cJSON *summary, const char *reason)
 {
+    static const struct {
+        const char *cause;
+        enum row_status status;
+    } known[] = {{"not-finite", ROW_NAN},    {"time-step", ROW_DT},    {"density", ROW_RHO},
+                 {"internal-energy", ROW_U}, {"escaped", ROW_ESCAPED}, {"energy", ROW_ENERGY},
+                 {"neighbours", ROW_CROWD}};
+    const cJSON *failure = summary ? json_get(summary, "failure") : NULL;
+    const cJSON *cause = failure ? json_get(failure, "cause") : NULL;
+    for (size_t i = 0; cJSON_IsString(cause) && i < sizeof known / sizeof *known; i++)
+        if (strcmp(cause->valuestring, known[i].cause) == 0)
+            return known[i].status;
     if (strstr(reason, "time step collapsed"))
         return ROW_DT;
     if (strstr(reason, "no longer a number") || strstr(reason, "not a number") ||
@@ -163,7 +174,7 @@ static int judge(const struct chart *c, struct row *r, const struct child_outcom
         return fail_row(r, ROW_CRASH, why, e);
     if (code == EXIT_USAGE || code == EXIT_REFUSED)
         return fail_row(r, ROW_REFUSED, why, e);
-    return fail_row(r, sort_reason(why), why, e);
+    return fail_row(r, sort_reason(summary, why), why, e);
 }
 
 /* Of a run that left no summary: as the chart has it, at least one. */

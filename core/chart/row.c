@@ -14,8 +14,9 @@ const char *const row_number_name[ROW_NUMBERS] = {"particles",      "steps",
                                                   "pairs",          "bytes_per_particle",
                                                   "peak_rss_bytes", "ns_per_pair",
                                                   "energy_drift"};
-const char *const row_status_name[ROW_STATUSES] = {"done",    "unstable", "nan",     "dt",
-                                                   "timeout", "crash",    "refused", "failed"};
+const char *const row_status_name[ROW_STATUSES] = {
+    "done",   "unstable", "nan",     "dt",    "rho",     "u",     "escaped",
+    "energy", "crowd",    "timeout", "crash", "refused", "failed"};
 
 void row_clear(struct row *r)
 {

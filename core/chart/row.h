@@ -30,7 +30,12 @@ enum row_status {
     ROW_DONE,
     ROW_UNSTABLE, /* it ended, with an error or a drift beyond the chart's bounds */
     ROW_NAN,
-    ROW_DT, /* its time step collapsed */
+    ROW_DT,      /* its time step collapsed */
+    ROW_RHO,     /* a density fell to 0 or below ... */
+    ROW_U,       /* ... an internal energy below */
+    ROW_ESCAPED, /* a particle left for good */
+    ROW_ENERGY,  /* the energy ran away */
+    ROW_CROWD,   /* a particle had too many neighbours */
     ROW_TIMEOUT,
     ROW_CRASH,
     ROW_REFUSED, /* scene, command line or plugin */

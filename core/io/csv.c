@@ -63,17 +63,7 @@ static void separate(struct csv *c)
 void csv_name(struct csv *c, const char *name)
 {
     separate(c);
-    if (!strpbrk(name, ",\"\r\n")) {
-        fputs(name, c->file);
-        return;
-    }
-    putc('"', c->file);
-    for (; *name; name++) {
-        if (*name == '"')
-            putc('"', c->file);
-        putc(*name, c->file);
-    }
-    putc('"', c->file);
+    text_put_cell(c->file, name);
 }
 
 void csv_count(struct csv *c, uint64_t value)

@@ -24,6 +24,8 @@ struct ghosts {
 };
 
 void ghosts_fini(struct ghosts *g);
+/* Into a checkpoint or out of it: of the ghosts of n real particles. */
+int ghosts_store(struct ghosts *g, struct store *s, size_t n, struct error *e);
 
 /* Wraps positions across periodic sides (to min <= x < max) and reflects those that crossed a
  * mirror, however far they went; a reflection turns vectors and tensors too, in every `state`

@@ -4,7 +4,6 @@
 #include "io/log.h"
 
 #include "base/text.h"
-#include "io/output.h"
 #include <errno.h>
 #include <math.h>
 #include <stdio_ext.h>
@@ -15,19 +14,34 @@
 
 /* -- log.csv ----------------------------------------------------------------------------------- */
 
-int log_open(struct log *l, const char *path, int dim, struct error *e)
+static int open_as(struct log *l, const char *path, int dim, const char *mode, struct error *e)
 {
     *l = (struct log){.dim = dim};
     l->path = text_format("%s", path);
     if (!l->path)
         return error_memory(e, "a path", strlen(path) + 1);
-    l->file = fopen(path, "we");
+    l->file = fopen(path, mode);
     if (l->file)
         return 0;
     error_set(e, EXIT_RUN, "cannot write %s: %s", path, strerror(errno));
     free(l->path);
     *l = (struct log){0};
     return -1;
+}
+
+int log_open(struct log *l, const char *path, int dim, struct error *e)
+{
+    return open_as(l, path, dim, "we", e);
+}
+
+int log_append(struct log *l, const char *path, int dim, struct error *e)
+{
+    if (open_as(l, path, dim, "ae", e))
+        return -1;
+    if (fseek(l->file, 0, SEEK_END) == 0)
+        l->good = ftell(l->file);
+    l->header_done = l->good > 0;
+    return 0;
 }
 
 /* A name as a cell: quoted where RFC 4180 asks for it. */
@@ -115,6 +129,67 @@ int log_write(struct log *l, const struct log_row *row, struct error *e)
     l->header_done = true;
     l->good = ftell(l->file);
     return 0;
+}
+
+int log_sync(struct log *l, struct error *e)
+{
+    if (l->file && fsync(fileno(l->file)) && errno != EINVAL && errno != EROFS)
+        return error_set(e, EXIT_RUN, "cannot write %s: %s", l->path, strerror(errno));
+    return 0;
+}
+
+/* All of a file, in fresh memory; *text NULL: there is none. */
+static int read_all(const char *path, char **text, size_t *n, struct error *e)
+{
+    *text = NULL;
+    *n = 0;
+    FILE *f = fopen(path, "re");
+    if (!f)
+        return errno == ENOENT
+                   ? 0
+                   : error_set(e, EXIT_USAGE, "cannot read %s: %s", path, strerror(errno));
+    for (size_t room = 65536;; room *= 2) {
+        char *grown = realloc(*text, room);
+        if (!grown) {
+            error_memory(e, path, room);
+            break;
+        }
+        *text = grown;
+        *n += fread(*text + *n, 1, room - *n, f);
+        if (*n < room && !ferror(f)) {
+            fclose(f);
+            return 0;
+        }
+        if (ferror(f)) {
+            error_set(e, EXIT_USAGE, "cannot read %s: %s", path, strerror(errno));
+            break;
+        }
+    }
+    fclose(f);
+    free(*text);
+    *text = NULL;
+    return -1;
+}
+
+int log_cut(const struct output *o, const char *name, uint64_t step, struct error *e)
+{
+    char *text, *path = output_path(o, name);
+    size_t n, end = 0;
+    if (!path)
+        return error_memory(e, "a path", strlen(name));
+    int status = read_all(path, &text, &n, e);
+    while (text && end < n) {
+        const char *row = text + end, *stop = memchr(row, '\n', n - end);
+        /* The header's first cell is no number. */
+        if (!stop || (end > 0 && strtoull(row, NULL, 10) >= step))
+            break;
+        end += (size_t)(stop - row) + 1;
+    }
+    if (!status && text && end < n)
+        status = output_write(o, name, text, end, e);
+    free(text);
+    free(path);
+    return status;
 }
 
 int log_close(struct log *l, struct error *e)

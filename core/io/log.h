@@ -2,7 +2,7 @@
 #ifndef IO_LOG_H
 #define IO_LOG_H
 
-#include "base/error.h"
+#include "io/output.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -31,9 +31,16 @@ struct log {
     long good; /* bytes known to be on disk, whole rows */
 };
 int log_open(struct log *l, const char *path, int dim, struct error *e);
+/* The same, but rows come behind those that are there. */
+int log_append(struct log *l, const char *path, int dim, struct error *e);
 /* Columns: step, time, dt, kinetic, internal, potential, momentum_x ..., angular_z (2D) or
  * angular_x ... (3D), mass, the extras by name, wall_s. The extras are those of the first row. */
 int log_write(struct log *l, const struct log_row *row, struct error *e);
+/* What has been written is on disk. */
+int log_sync(struct log *l, struct error *e);
+/* Takes the rows from this step on out of a file of rows in the folder whose first cell is a step, and what a
+ * killed run has left half written; nothing if there is no such file. */
+int log_cut(const struct output *o, const char *name, uint64_t step, struct error *e);
 /* Syncs and closes. Nothing on a log that was never opened and is zeros. */
 int log_close(struct log *l, struct error *e);
 

@@ -112,7 +112,9 @@ static int one_step(struct loop *l, struct error *e)
 static int after_step(struct loop *l, struct error *e)
 {
     struct run *r = &l->run;
-    bool last = finished(l);
+    const bool last = l->ended = finished(l);
+    if (loop_checkpoint_if_due(l, e))
+        return -1;
     bool by_time = r->time >= l->next_log;
     const bool logged = last || is_logged(l, r->step, r->time);
     /* Sums over all particles: where they are written. Rates are looked at in every evaluation. */
@@ -136,10 +138,9 @@ static int after_step(struct loop *l, struct error *e)
     return 0;
 }
 
-static int steps(struct loop *l, struct error *e)
+static int start(struct loop *l, struct error *e)
 {
     struct run *r = &l->run;
-    double begin = omp_get_wtime(), io = r->cost.io;
     r->look = true;
     if (run_passes(r, MOMENT_START, e) || run_passes(r, MOMENT_EVALUATE, e))
         return -1;
@@ -149,9 +150,18 @@ static int steps(struct loop *l, struct error *e)
     l->next_output = 1;
     l->next_log =
         isfinite(l->scene->output.log_every) ? l->begin + l->scene->output.log_every : INFINITY;
-    if (loop_log(l, e) || loop_snapshot(l, e))
+    l->ended = finished(l);
+    return loop_log(l, e) || loop_snapshot(l, e) ? -1 : 0;
+}
+
+/* A checkpoint was taken before its step was looked at. */
+static int steps(struct loop *l, struct error *e)
+{
+    struct run *r = &l->run;
+    double begin = omp_get_wtime() - r->cost.loop, io = r->cost.io;
+    if (l->options->resume ? after_step(l, e) : start(l, e))
         return -1;
-    while (!finished(l))
+    while (!l->ended)
         if (one_step(l, e) || after_step(l, e))
             return -1;
     if (run_settle(r, e))
@@ -177,8 +187,14 @@ static int loop_begin(struct loop *l, struct plan *plan, struct error *e)
         return error_memory(e, "the scene's text", s->doc->length);
     if (run_init(&l->run, plan, l->options->threads, l->options->path, l->options->audit, e))
         return -1;
+    l->checkpointed = UINT64_MAX;
+    l->refused = l->options->resume && loop_resume(l, e);
+    if (l->refused)
+        return -1;
     char *path = output_path(l->out, "log.csv");
-    int status = path ? log_open(&l->log, path, plan->dim, e) : error_memory(e, "a path", 1);
+    int status = !path                ? error_memory(e, "a path", 1)
+                 : l->options->resume ? log_append(&l->log, path, plan->dim, e)
+                                      : log_open(&l->log, path, plan->dim, e);
     free(path);
     progress_start(&l->progress, l->options->progress, l->begin, l->end);
     return status;
@@ -207,7 +223,7 @@ int loop_run(struct plan *plan, const struct output *out, const struct loop_opti
         status = loop_draw(&l, e);
     if (!status)
         status = loop_summarise(&l, o->stop && *o->stop ? "stopped" : "done", NULL, e);
-    else if (l.run.plan)
+    else if (l.run.plan && !l.refused)
         keep_failed(&l, e);
     struct error ignored = {0};
     log_close(&l.log, &ignored);

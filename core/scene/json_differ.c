@@ -42,8 +42,7 @@ static bool differ(const struct json_skip *skip, size_t n, int depth,
             /* Gone, or new; if neither, the order has changed, which is that of the particles. */
             const bool gone = !cJSON_GetObjectItemCaseSensitive(b, x->string);
             const bool is_new = !cJSON_GetObjectItemCaseSensitive(a, y->string);
-            *out = (struct json_difference){is_new && !gone ? NULL : x, gone ? NULL : y};
-            out->order = !gone && !is_new;
+            *out = (struct json_difference){is_new && !gone ? NULL : x, gone ? NULL : y, !gone && !is_new};
             return true;
         }
         const struct json_difference next = {.was = x, .is = y};
@@ -52,7 +51,7 @@ static bool differ(const struct json_skip *skip, size_t n, int depth,
         x = past_skipped(skip, n, a, depth, x->next);
         y = past_skipped(skip, n, b, depth, y->next);
     }
-    *out = (struct json_difference){.was = x, .is = y};
+    *out = (struct json_difference){x, y, false};
     return x || y;
 }
 

@@ -68,7 +68,7 @@ whole = {
     "compare": [{"array": "fluid", "exact": "e", "where": "r < 1", "fields": ["rho"], "gamma": 1.4}],
     "probes": [{"name": "a", "array": "fluid", "mean": "rho", "expected": 16},
                {"name": "b", "array": "fluid", "crossing": {"of": "rho", "shell": 0.1, "level": 1}}],
-    "output": {"every": 0.1, "log": {"steps": 10}, "picture": {"field": "rho", "min": 0, "max": 1}},
+    "output": {"every": 0.1, "log": {"steps": 10}, "checkpoint": {"steps": 50, "keep": 3}, "picture": {"field": "rho", "min": 0, "max": 1}},
 }
 for error in validator.iter_errors(whole):
     check(False, f"the whole scene: /{'/'.join(map(str, error.absolute_path))}: {error.message}")
@@ -93,6 +93,7 @@ wrong = [
     ("compare.0.exact", ABSENT), ("probes.0.min", "rho"), ("probes.0.mean", ABSENT),
     ("probes.1.crossing.shell", 0), ("output.every", 0), ("output.log.every", 1),
     ("output.picture.max", ABSENT), ("output.picture.map", "blue"), ("output.checkpiont", {}),
+    ("output.checkpoint.every", 1), ("output.checkpoint.steps", 0), ("output.checkpoint.keep", 0),
 ]
 for path, value in wrong:
     scene = copy.deepcopy(whole)
@@ -154,10 +155,11 @@ expected = {
     "scene_scheme.c:compile_verb:keys": {"delete"},
     "scene_scheme.c:scene_scheme:keys": definition("scheme", "anyOf", 1),
     "scene_output.c:scene_time:keys": definition("time"),
-    "scene_output.c:scene_compares:keys": definition("compare"),
-    "scene_output.c:compile_crossing:keys": definition("probe", "properties", "crossing"),
-    "scene_output.c:compile_probe:keys": definition("probe"),
+    "scene_measure.c:scene_compares:keys": definition("compare"),
+    "scene_measure.c:compile_crossing:keys": definition("probe", "properties", "crossing"),
+    "scene_measure.c:compile_probe:keys": definition("probe"),
     "scene_output.c:compile_log:keys": definition("output", "properties", "log"),
+    "scene_output.c:compile_checkpoint:keys": definition("output", "properties", "checkpoint"),
     "scene_output.c:compile_picture:keys": definition("picture"),
     "scene_output.c:scene_output:keys": definition("output"),
     "shape.c:compile_box:keys": definition("shape", "properties", "box"),

@@ -42,7 +42,8 @@ static bool differ(const struct json_skip *skip, size_t n, int depth,
             /* Gone, or new; if neither, the order has changed, which is that of the particles. */
             const bool gone = !cJSON_GetObjectItemCaseSensitive(b, x->string);
             const bool is_new = !cJSON_GetObjectItemCaseSensitive(a, y->string);
-            *out = (struct json_difference){is_new && !gone ? NULL : x, gone ? NULL : y, !gone && !is_new};
+            *out = (struct json_difference){is_new && !gone ? NULL : x, gone ? NULL : y,
+                                            !gone && !is_new};
             return true;
         }
         const struct json_difference next = {.was = x, .is = y};

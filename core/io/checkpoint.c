@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #define WHAT "sph checkpoint"
+#define ORDER 0x01020304u           /* of the bytes of what is written as it is */
 #define COMPACT_MOST 4096           /* bytes */
 #define PIECE ((hsize_t)128 * 1024) /* elements */
 
@@ -102,7 +103,9 @@ int checkpoint_create(struct checkpoint *c, const char *path, struct error *e)
     }
     char what[] = WHAT, *text = what;
     uint64_t format = CHECKPOINT_FORMAT;
-    if (store_text(&c->store, "what", &text, e) || store_u64(&c->store, "format", &format, e)) {
+    uint32_t order = ORDER;
+    if (store_block(&c->store, "byte_order", STORE_U8, &order, sizeof order, e) ||
+        store_text(&c->store, "what", &text, e) || store_u64(&c->store, "format", &format, e)) {
         checkpoint_finish(c, -1, e);
         return -1;
     }
@@ -222,6 +225,7 @@ static int check(struct checkpoint *c, const char *path, struct error *e)
 {
     char *what = NULL;
     uint64_t format = 0;
+    uint32_t order = 0;
     struct error ignored = {0};
     if (store_text(&c->store, "what", &what, &ignored) || !what || strcmp(what, WHAT) != 0) {
         free(what);
@@ -234,6 +238,11 @@ static int check(struct checkpoint *c, const char *path, struct error *e)
         return error_set(e, EXIT_USAGE,
                          "%s is a checkpoint of format %llu; this version reads format %d", path,
                          (unsigned long long)format, CHECKPOINT_FORMAT);
+    if (store_block(&c->store, "byte_order", STORE_U8, &order, sizeof order, e))
+        return -1;
+    if (order != ORDER)
+        return error_set(e, EXIT_USAGE, "%s was made on a machine with another order of bytes",
+                         path);
     struct visit v = {c, e};
     if (e)
         e->text[0] = '\0';

@@ -1,6 +1,7 @@
 /* particles/particles_store.c -- an array goes into a checkpoint as it is held, ghosts included, and comes back:
  * every bit of every column. Mirrors are copies, and are made again. */
 #include "particles/particles.h"
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 

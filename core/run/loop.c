@@ -154,11 +154,17 @@ static int start(struct loop *l, struct error *e)
     return loop_log(l, e) || loop_snapshot(l, e) ? -1 : 0;
 }
 
+double loop_seconds(const struct loop *l)
+{
+    return omp_get_wtime() - l->loop_begun - (l->run.cost.io - l->loop_io);
+}
+
 /* A checkpoint was taken before its step was looked at. */
 static int steps(struct loop *l, struct error *e)
 {
     struct run *r = &l->run;
-    double begin = omp_get_wtime() - r->cost.loop, io = r->cost.io;
+    l->loop_begun = omp_get_wtime() - r->cost.loop;
+    l->loop_io = r->cost.io;
     if (l->options->resume ? after_step(l, e) : start(l, e))
         return -1;
     while (!l->ended)
@@ -171,7 +177,7 @@ static int steps(struct loop *l, struct error *e)
         if (run_passes(r, MOMENT_EVALUATE, e))
             return -1;
     }
-    r->cost.loop = omp_get_wtime() - begin - (r->cost.io - io);
+    r->cost.loop = loop_seconds(l);
     return loop_snapshot(l, e);
 }
 
@@ -197,6 +203,7 @@ static int loop_begin(struct loop *l, struct plan *plan, struct error *e)
                                       : log_open(&l->log, path, plan->dim, e);
     free(path);
     progress_start(&l->progress, l->options->progress, l->begin, l->end);
+    l->progress.started -= omp_get_wtime() - l->started; /* a run that goes on has begun earlier */
     return status;
 }
 

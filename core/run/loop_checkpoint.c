@@ -53,6 +53,8 @@ static int loop_store(struct loop *l, struct store *s, struct error *e)
 {
     double every = l->scene->output.every, log_every = l->scene->output.log_every;
     double elapsed = omp_get_wtime() - l->started;
+    if (!s->reading)
+        l->run.cost.loop = loop_seconds(l);
     store_enter(s, "loop", 0);
     int status =
         totals_store(&l->first, "first", s, e) || totals_store(&l->last, "last", s, e) ||

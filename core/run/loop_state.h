@@ -20,6 +20,7 @@ struct loop {
     double full; /* the last step's dt before it was cut to end on time */
     uint64_t max_steps, snapshots, next_output;
     double next_log;
+    double loop_begun, loop_io; /* what cost.loop is measured from: the clock, and cost.io then */
     bool ended;   /* by what was known after the last step: a signal may come at any time */
     bool refused; /* nothing was begun: nothing is to be kept of it */
     uint64_t checkpointed; /* the step of the last checkpoint; UINT64_MAX: none yet */
@@ -40,6 +41,9 @@ static inline uint64_t particles_total(const struct plan *plan)
         n += plan->array[a].p.n;
     return n;
 }
+
+/* Seconds in the loop so far, what was written aside. */
+double loop_seconds(const struct loop *l);
 
 /* loop_files.c */
 int loop_log(struct loop *l, struct error *e);

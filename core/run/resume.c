@@ -20,6 +20,7 @@ void origin_free(struct origin *o)
     free(o->scene_path);
     free(o->plugins);
     free(o->precision);
+    free(o->processor);
     *o = (struct origin){0};
 }
 
@@ -34,6 +35,18 @@ static char *plugins_of(const struct registry *r)
     return all;
 }
 
+static const char *processor(void)
+{
+#if defined(__x86_64__) && defined(__GNUC__)
+    if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+        __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512bw"))
+        return "avx512";
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") ? "avx2" : "base";
+#else
+    return "base";
+#endif
+}
+
 int origin_make(struct origin *o, const struct plan *plan, uint32_t path, const char *scene_path,
                 struct error *e)
 {
@@ -46,8 +59,10 @@ int origin_make(struct origin *o, const struct plan *plan, uint32_t path, const 
         o->scene_path = strdup(scene_path);
     o->plugins = plugins_of(plan->registry);
     o->precision = strdup(precision_name[plan->precision]);
+    o->processor = strdup(processor());
     o->set = calloc(d->n_set + 1, sizeof *o->set);
-    bool good = o->version && o->scene && o->scene_path && o->plugins && o->precision && o->set;
+    bool good = o->version && o->scene && o->scene_path && o->plugins && o->precision &&
+                o->processor && o->set;
     for (; good && o->n_set < d->n_set; o->n_set++) {
         o->set[o->n_set] = strdup(d->set[o->n_set]);
         good = o->set[o->n_set] != NULL;
@@ -64,9 +79,11 @@ int origin_store(struct origin *o, struct store *s, struct error *e)
     if (store_text(s, "version", &o->version, e) || store_text(s, "scene", &o->scene, e) ||
         store_text(s, "scene_path", &o->scene_path, e) ||
         store_text(s, "plugins", &o->plugins, e) || store_text(s, "precision", &o->precision, e) ||
-        store_u64(s, "path", &o->path, e) || store_count(s, "n_set", &n, e))
+        store_text(s, "processor", &o->processor, e) || store_u64(s, "path", &o->path, e) ||
+        store_count(s, "n_set", &n, e))
         return -1;
-    if (!o->version || !o->scene || !o->scene_path || !o->plugins || !o->precision || n > 100000)
+    if (!o->version || !o->scene || !o->scene_path || !o->plugins || !o->precision ||
+        !o->processor || n > 100000)
         return store_broken(s, e, "it does not tell of its scene");
     if (s->reading)
         o->set = calloc(n + 1, sizeof *o->set);
@@ -148,8 +165,8 @@ void resume_close(struct resume *r)
 
 /* What a run may be given anew as it goes on. */
 static const struct json_skip may_differ[] = {
-    {"time", "end"},  {"time", "steps"},  {NULL, "output"}, {NULL, "compare"},
-    {NULL, "probes"}, {NULL, "profiles"}, {NULL, "watch"},  {NULL, "title"}};
+    {"time", "end"},    {"time", "steps"}, {NULL, "output"}, {NULL, "compare"}, {NULL, "probes"},
+    {NULL, "profiles"}, {NULL, "watch"},   {NULL, "title"},  {NULL, "$schema"}};
 
 static int scenes_differ(const struct resume *r, const struct document *was,
                          const struct document *is, const struct json_difference *d,
@@ -225,6 +242,10 @@ int resume_check(const struct resume *r, const struct plan *plan, uint32_t path,
         return error_set(e, EXIT_USAGE, "%s was made with --path %s, not %s", r->path,
                          o->path < paths ? name[o->path] : "of another kind",
                          path < paths ? name[path] : "another");
+    if (strcmp(o->processor, processor()) != 0)
+        fprintf(stderr,
+                "sph: %s was made on a processor with %s, this one has %s: last bits may differ\n",
+                r->path, o->processor, processor());
     return 0;
 }
 

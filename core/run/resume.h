@@ -15,6 +15,7 @@ struct origin {
     size_t n_set;
     char *plugins;   /* a line each: name, tab, version */
     char *precision; /* as the plan had it */
+    char *processor; /* what of its instructions changes last bits */
     uint64_t path;   /* how pair loops ran: SPH_PATH_... */
 };
 

@@ -12,7 +12,7 @@ import time
 import h5py
 import numpy
 
-from scenes import Result, Scenes, changed, example
+from scenes import Result, Scenes, Snapshot, changed, example
 
 scenes = Scenes()
 expect = scenes.expect
@@ -196,6 +196,21 @@ for options in (("--until", "0.1"), ("--set", "time.end=0.1")):
     expect(f"{options}: ends there", part.summary()["time"] == 0.1)
     path = scenes.write(ends, "ends.json")
     compare(f"on from {options}", full, going_on(part.out, path, "--resume", "latest", "--out", "@"))
+
+# Other moments of output from here on.
+part = scenes.good(kept, "--steps", "50")
+result = going_on(part.out, path, "--resume", "latest", "--out", "@", "--set", "output.every=0.04", "--set",
+                  "output.log.every=0.04", "--set", "output.log.steps=null", "--until", "0.3")
+expect("null is no number", result.code == 2, result.stderr)
+words = ("--set", 'output={"every": 0.04, "log": {"every": 0.04}}', "--until", "0.3")
+result = going_on(part.out, path, "--resume", "latest", "--out", "@", *words)
+found = [round(Snapshot(one).time, 12) for one in result.snapshots()]
+old = [round(Snapshot(one).time, 12) for one in part.snapshots()[:-1]]
+begin = part.summary()["time"]
+wanted = [round(0.04 * k, 12) for k in range(1, 8) if 0.04 * k > begin]
+expect("other moments of output", result.code == 0 and found == [*old, *wanted, 0.3], (found, old, wanted, result.stderr))
+late = [row.split(",") for row in rows(result.out)[1:] if int(row.split(",")[0]) > 50]
+expect("other moments of the log", [round(float(row[1]), 12) for row in late] == [*wanted, 0.3], late)
 
 # Signals: one that asks, one that does not.
 busy = changed(with_checkpoints(small("noh.json", 0.05), 5, 2), time={"end": 0.25})

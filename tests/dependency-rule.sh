@@ -8,11 +8,12 @@ set -eu
 : "${top_srcdir:=$(cd "$(dirname "$0")/.." && pwd)}"
 
 # Schemes, solvers and test problems by name. The names of plugins are added, but for those that are
-# words of the ABI: a kernel, an equation of state or an exact solution is a kind the core knows.
+# words of the ABI, where a kernel, an equation of state or an exact solution is a kind the core knows,
+# or of every day (forces).
 names='gsph|mpm|adke|wcsph|crksph|edac|tvf|godunov|riemann|hllc|inutsuka|balsara|noh|sod'
 names="$names|sedov|gresho|taylor-green|dam-break|poiseuille|couette|wendland|gaussian|cubic-spline"
 names="$names|ideal-gas|tait|artificial[- ]viscosity"
-kinds=' eos exact kernels boundaries '
+kinds=' eos exact kernels boundaries forces '
 
 # complaints ROOT: one line for every breach under ROOT.
 complaints() {

@@ -147,7 +147,7 @@ says 0 'HDF5' info --build
 says 2 'did you mean "info"' inof
 says 2 'did you mean "kernels"' info kernel
 says 2 'no plugin or item "kernel/wendland-c5" (did you mean "wendland-c2"?)' info kernel/wendland-c5
-says 2 'known are: gsph' info scheme/wendland-c4
+says 2 'known are: barotropic, ' info scheme/wendland-c4
 says 2 'no scene is given'
 says 3 'no plugin "no-such-plugin"' info --load no-such-plugin
 cp "$0" "$scratch/script.so"

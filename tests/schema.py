@@ -32,7 +32,7 @@ def check(good, what):
 
 # Every example is a scene.
 examples = [p for p in sorted(glob.glob(os.path.join(top, "examples/*.json")))
-            if not p.endswith(".schema.json")]
+            if not p.endswith((".schema.json", ".chart.json"))]
 check(len(examples) >= 5, "examples are found")
 for path in examples:
     with open(path, encoding="utf-8") as file:
@@ -64,6 +64,10 @@ whole = {
         {"operation": "summation", "function": "f", "of": "rho", "to": ["fluid"], "at": "finish"},
         {"operation": "assignment", "of": "label", "expression": "x > 0", "after": "g"}]},
     "kernel": {"name": "k"}, "limits": {"particles": 1000}, "neighbours": {"skin": 0.2},
+    "watch": {"not-finite": "stop", "density": "count", "internal-energy": False,
+              "escaped": {"action": "count", "margin": 1, "where": "r < 2"},
+              "time-step": {"below": 1e-9}, "energy": {"action": "stop", "above": 5, "scale": 2},
+              "neighbours": {"above": 300}},
     "time": {"integrator": "kdk", "begin": 0, "end": 2, "cfl": 0.3, "dt_max": 0.1, "steps": 9},
     "compare": [{"array": "fluid", "exact": "e", "where": "r < 1", "fields": ["rho"], "gamma": 1.4}],
     "probes": [{"name": "a", "array": "fluid", "mean": "rho", "expected": 16},
@@ -78,6 +82,9 @@ wrong = [
     ("titel", "T"), ("dimensions", ABSENT), ("dimensions", 4), ("dimensions", "2"),
     ("units", "metric"), ("particles", {}), ("particles", ABSENT), ("scheme", ABSENT), ("time", {}),
     ("time.end", "soon"), ("time.ende", 1), ("time.cfl", 0), ("domain.min", 0),
+    ("watch", "off"), ("watch.density", "ignore"), ("watch.densty", "stop"), ("watch.not-finite", "off"),
+    ("watch.escaped.margin", 0), ("watch.escaped.wher", "x"), ("watch.time-step.below", 1),
+    ("watch.energy.action", "halt"), ("watch.neighbours.above", "many"),
     ("domain.sides.x", "perodic"), ("domain.sides.y", ["open"]), ("domain.sides.w", "open"),
     ("materials.gas.eos", {"gamma": 1.4}), ("materials.gas.eso", 1), ("particles.fluid.fill", ABSENT),
     ("particles.fluid.fill", []), ("particles.fluid.fill.0.spacing", -0.1),
@@ -134,6 +141,10 @@ def definition(name, *way):
     return keys("definitions", name, *way)
 
 
+def watch_keys(cause):
+    return keys("properties", "watch", "anyOf", 1, "properties", cause, "anyOf", 1)
+
+
 fills = definition("lattice") | definition("glass") | definition("file")
 expected = {
     "scene.c:compile:keys": keys(),
@@ -162,6 +173,12 @@ expected = {
     "scene_output.c:compile_checkpoint:keys": definition("output", "properties", "checkpoint"),
     "scene_output.c:compile_picture:keys": definition("picture"),
     "scene_output.c:scene_output:keys": definition("output"),
+    "scene_watch.c::watch_keys": keys("properties", "watch", "anyOf", 1),
+    "scene_watch.c:check_keys:keys": definition("watch-as"),
+    "scene_watch.c:check_keys:escaped_keys": watch_keys("escaped"),
+    "scene_watch.c:check_keys:time_step_keys": watch_keys("time-step"),
+    "scene_watch.c:check_keys:energy_keys": watch_keys("energy"),
+    "scene_watch.c:check_keys:neighbours_keys": watch_keys("neighbours"),
     "shape.c:compile_box:keys": definition("shape", "properties", "box"),
     "shape.c:compile_sphere:keys": definition("shape", "properties", "sphere"),
     "shape.c:compile_cylinder:keys": definition("shape", "properties", "cylinder"),
@@ -177,6 +194,15 @@ for name, found in known.items():
 for name, wanted in expected.items():
     if name not in known:
         check(False, f"{name}: not found in core/scene")
+
+# The integrators: those of the program, in the schema and in the manual.
+with open(os.path.join(top, "core/integrators/integrator.c"), encoding="utf-8") as file:
+    names = re.findall(r'"([^"]+)"', re.search(r"names\[\] = \{([^}]*)\}", file.read())[1])
+with open(os.path.join(top, "man/sph-scene.5"), encoding="utf-8") as file:
+    page = file.read()
+check(names == definitions["time"]["properties"]["integrator"]["enum"], f"integrators are {names}")
+for name in names:
+    check(f".Cm {name}" in page, f"sph-scene.5 does not name the integrator {name}")
 
 print(f"{len(examples)} examples, {len(wrong)} wrong scenes, {len(known)} sets of keys")
 sys.exit(1 if failures else 0)

@@ -147,6 +147,22 @@ change('"integrator": "kdk"', '"integrator": "kkd"', '"kkd"', '(did you mean "kd
 change('"end": 0.01', '"end": @-0.01', "/time/end: the end -0.01 is not after the begin 0")
 change(', "end": 0.01', "", 'the key "end" is missing', "/time: ")
 change('"end": 0.01', '"end": 0.01, "cfl": @-1', "/time/cfl: -1 is not a time-step number")
+change('"dimensions": 1,', '"watch": {@"densty": "stop"}, "dimensions": 1,',
+       '/watch/densty: unknown key "densty" (did you mean "density"?)')
+change('"dimensions": 1,', '"watch": {"density": @"cout"}, "dimensions": 1,',
+       '/watch/density: unknown action "cout" (did you mean "count"?)')
+change('"dimensions": 1,', '"watch": {"density": @3}, "dimensions": 1,', "/watch/density: 3 is not an action")
+change('"dimensions": 1,', '"watch": @"off", "dimensions": 1,', "/watch: ", "object")
+change('"dimensions": 1,', '"watch": {"density": {@"below": 1}}, "dimensions": 1,', 'unknown key "below"')
+change('"dimensions": 1,', '"watch": {"escaped": {"margin": @-1}}, "dimensions": 1,',
+       "/watch/escaped/margin: -1 is not a margin; give a positive number")
+change('"dimensions": 1,', '"watch": {"escaped": {"where": @"q < 1"}}, "dimensions": 1,',
+       '/watch/escaped/where: "q < 1": column 1: unknown name "q"')
+change('"dimensions": 1,', '"watch": {"time-step": {"below": @2}}, "dimensions": 1,',
+       "/watch/time-step/below: 2 is not a fraction of the longest step")
+change('"dimensions": 1,', '"watch": {"energy": {"above": @"much"}}, "dimensions": 1,', '/watch/energy/above: "much"')
+change('"dimensions": 1,', '"watch": {"not-finite": @"off"}, "dimensions": 1,',
+       "/watch/not-finite: a value that is not finite always stops the run")
 change('"exact": "riemann"', '"exact": "rieman"', '"rieman"', '(did you mean "riemann"?)')
 change('"where": "r > 0.1"', '"where": @"r >"', '/compare/0/where: "r >": the expression ends too early')
 change('"array": "fluid", "mean"', '"array": @"fluit", "mean"', 'unknown array "fluit" (did you mean "fluid"?)')

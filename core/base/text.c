@@ -185,3 +185,18 @@ void text_one_line(char *s)
         if ((unsigned char)*s < 0x20 || *s == 0x7f)
             *s = '?';
 }
+
+void text_put_cell(FILE *f, const char *text)
+{
+    if (!strpbrk(text, ",\"\r\n")) {
+        fputs(text, f);
+        return;
+    }
+    putc('"', f);
+    for (; *text; text++) {
+        if (*text == '"')
+            putc('"', f);
+        putc(*text, f);
+    }
+    putc('"', f);
+}

@@ -4,6 +4,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 /* The nearest of `known` to `word` (Damerau-Levenshtein distance at most a third of its length,
  * rounded up), or NULL. */
@@ -21,5 +22,8 @@ void text_one_line(char *s);
 
 /* Offset of the first byte that is not valid UTF-8, or (size_t)-1. */
 size_t text_invalid_utf8(const char *s, size_t n);
+
+/* A text as a cell of CSV: quoted where RFC 4180 asks for it. */
+void text_put_cell(FILE *f, const char *text);
 
 #endif

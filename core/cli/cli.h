@@ -10,6 +10,7 @@ int cli_info(int argc, char **argv);
 int cli_plan(int argc, char **argv);
 int cli_check(int argc, char **argv);
 int cli_render(int argc, char **argv);
+int cli_chart(int argc, char **argv);
 int cli_new_plugin(int argc, char **argv);
 
 /* Prints "sph: SENTENCE" on stderr; returns the error's exit code. */

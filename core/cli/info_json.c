@@ -3,6 +3,7 @@
 #include "config.h"
 
 #include "cli/info.h"
+#include "integrators/integrator.h"
 #include "registry/extension.h"
 
 #include <cjson/cJSON.h>
@@ -242,6 +243,23 @@ static void plugin_json(cJSON *array, const struct plugin *p)
     cJSON_AddStringToObject(o, "file", p->path);
 }
 
+static void integrators_json(cJSON *array)
+{
+    size_t n;
+    const char *const *name = integrator_names(&n);
+
+    for (size_t i = 0; i < n; i++) {
+        const struct integrator *x = integrator_find(name[i]);
+        cJSON *o = element(array);
+        cJSON_AddStringToObject(o, "name", x->name);
+        cJSON_AddStringToObject(o, "doc", x->doc);
+        cJSON_AddStringToObject(o, "source", x->source);
+        cJSON_AddNumberToObject(o, "order", x->order);
+        cJSON_AddNumberToObject(o, "evaluations", x->evaluations);
+        cJSON_AddNumberToObject(o, "knee", x->knee);
+    }
+}
+
 int info_json(const struct registry *r, const struct info_choice *c, struct error *e)
 {
     cJSON *root = cJSON_CreateObject();
@@ -255,6 +273,7 @@ int info_json(const struct registry *r, const struct info_choice *c, struct erro
     list = cJSON_AddArrayToObject(root, "extensions");
     for (size_t i = 0; i < n_extension; i++)
         cJSON_AddItemToArray(list, cJSON_CreateString(extension[i].id));
+    integrators_json(cJSON_AddArrayToObject(root, "integrators"));
     list = cJSON_AddArrayToObject(root, "plugins");
     for (size_t i = 0; i < c->n_plugin; i++)
         plugin_json(list, &r->plugin[c->plugin[i]]);

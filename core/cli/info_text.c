@@ -1,5 +1,6 @@
 /* cli/info_text.c -- `sph info` for people: to stdout, at most 80 columns. */
 #include "cli/info.h"
+#include "integrators/integrator.h"
 #include "registry/extension.h"
 
 #include <stdarg.h>
@@ -282,6 +283,18 @@ static size_t widest(const struct registry *r, const struct info_choice *c)
     return most;
 }
 
+/* They are built in. */
+static void integrators_text(size_t indent)
+{
+    size_t n;
+    const char *const *name = integrator_names(&n);
+
+    puts("Integrators");
+    for (size_t i = 0; i < n; i++)
+        labelled(2, indent, name[i], integrator_find(name[i])->doc);
+    putchar('\n');
+}
+
 /* A line each, by kind. */
 static void list_text(const struct registry *r, const struct info_choice *c)
 {
@@ -304,6 +317,7 @@ static void list_text(const struct registry *r, const struct info_choice *c)
         if (any)
             putchar('\n');
     }
+    integrators_text(indent);
     puts(c->n_plugin > 0 ? "Plugins" : "No plugin was found.");
     for (size_t i = 0; i < c->n_plugin; i++) {
         const struct plugin *p = &r->plugin[c->plugin[i]];

@@ -22,6 +22,7 @@ static const struct {
     {"plan", "sph plan", cli_plan, "what would be modelled for a scene, and its cost"},
     {"check", "sph check", cli_check, "errors of a scene, by line and column; nothing is run"},
     {"render", "sph render", cli_render, "pictures of snapshots"},
+    {"chart", "sph chart", cli_chart, "error against cost for a family of runs"},
     {"new-plugin", "sph new-plugin", cli_new_plugin, "a plugin project to begin with"},
 };
 #define N_COMMANDS (sizeof(commands) / sizeof(commands[0]))

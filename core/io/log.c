@@ -44,22 +44,6 @@ int log_append(struct log *l, const char *path, int dim, struct error *e)
     return 0;
 }
 
-/* A name as a cell: quoted where RFC 4180 asks for it. */
-static void put_name(FILE *f, const char *name)
-{
-    if (!strpbrk(name, ",\"\r\n")) {
-        fputs(name, f);
-        return;
-    }
-    putc('"', f);
-    for (; *name; name++) {
-        if (*name == '"')
-            putc('"', f);
-        putc(*name, f);
-    }
-    putc('"', f);
-}
-
 /* 17 digits: what is read back is what was. */
 static void put_number(FILE *f, double value)
 {
@@ -84,7 +68,7 @@ static void put_header(const struct log *l, const struct log_row *row)
     fputs(",mass", l->file);
     for (uint64_t i = 0; i < row->n_extra; i++) {
         putc(',', l->file);
-        put_name(l->file, row->extra_name[i]);
+        text_put_cell(l->file, row->extra_name[i]);
     }
     fputs(",wall_s\n", l->file);
 }
@@ -224,8 +208,7 @@ void progress_start(struct progress *p, bool wanted, double begin, double end)
     *p = (struct progress){wanted && able, begin, end, now(), -1.0};
 }
 
-/* "12 s", "3 min 20 s", "2 h 05 min" */
-static void put_duration(char *out, size_t size, double seconds)
+void progress_duration(char *out, size_t size, double seconds)
 {
     if (!(seconds < 1e7))
         snprintf(out, size, "?");
@@ -243,7 +226,7 @@ const char *progress_line(char *out, size_t size, const struct progress *p, uint
     const double done = (time - p->begin) / (p->end - p->begin);
     char eta[32] = "?", percent[16] = "";
     if (done > 0 && done <= 1) {
-        put_duration(eta, sizeof eta, elapsed / done - elapsed);
+        progress_duration(eta, sizeof eta, elapsed / done - elapsed);
         snprintf(percent, sizeof percent, "%3.0f %%  ", 100 * done);
     }
     snprintf(out, size, "%sstep %llu  t %.4g  dt %.2e  energy drift %.1e  ETA %s", percent,
@@ -251,18 +234,26 @@ const char *progress_line(char *out, size_t size, const struct progress *p, uint
     return out;
 }
 
-void progress_show(struct progress *p, uint64_t step, double time, double dt, double drift)
+static bool is_due(const struct progress *p)
 {
-    if (!p->on)
+    return p->on && !(p->shown >= 0 && now() - p->shown < PROGRESS_INTERVAL);
+}
+
+void progress_text(struct progress *p, const char *line)
+{
+    if (!is_due(p))
         return;
-    const double t = now();
-    if (p->shown >= 0 && t - p->shown < PROGRESS_INTERVAL)
-        return;
-    p->shown = t;
-    char line[80];
-    progress_line(line, sizeof line, p, step, time, dt, drift, t - p->started);
+    p->shown = now();
     fprintf(stderr, "\r%s\033[K", line);
     fflush(stderr);
+}
+
+void progress_show(struct progress *p, uint64_t step, double time, double dt, double drift)
+{
+    char line[80];
+    if (is_due(p))
+        progress_text(
+            p, progress_line(line, sizeof line, p, step, time, dt, drift, now() - p->started));
 }
 
 void progress_end(struct progress *p)

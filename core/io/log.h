@@ -58,5 +58,9 @@ void progress_end(struct progress *p);
 /* The line as it is shown, for `elapsed` seconds so far. Returns out. */
 const char *progress_line(char *out, size_t size, const struct progress *p, uint64_t step,
                           double time, double dt, double drift, double elapsed);
+/* "12 s", "3 min 20 s", "2 h 05 min" */
+void progress_duration(char *out, size_t size, double seconds);
+/* Another line in the place of the step's, for what else takes long. */
+void progress_text(struct progress *p, const char *line);
 
 #endif

@@ -307,6 +307,17 @@ int output_cut(const struct output *o, uint64_t snapshots, uint64_t step, struct
     return clear_but(o, &kept, e);
 }
 
+void output_sweep(const struct output *o)
+{
+    DIR *folder = opendir(o->dir);
+    const struct dirent *entry;
+    while (folder && (entry = readdir(folder)))
+        if (starts_with(entry->d_name, ASIDE_PREFIX))
+            unlinkat(dirfd(folder), entry->d_name, 0);
+    if (folder)
+        closedir(folder);
+}
+
 /* -- Files written whole ----------------------------------------------------------------------- */
 
 char *output_path(const struct output *o, const char *name)

@@ -25,6 +25,8 @@ int output_clear(const struct output *o, struct error *e);
 /* Of the results there, removes what a run that goes on after `step`, with snapshot number `snapshots`, makes
  * again: later snapshots and checkpoints, the summary, what was being written. */
 int output_cut(const struct output *o, uint64_t snapshots, uint64_t step, struct error *e);
+/* Removes what killed writers left in a claimed folder: files aside that came to no name. */
+void output_sweep(const struct output *o);
 /* Gives the claim back. Nothing on an `o` that was never opened and is zeros. */
 void output_close(struct output *o);
 /* "DIR/name" into fresh memory; NULL when out of memory. */

@@ -1,4 +1,5 @@
-/* io/render_parts.h -- what the parts of the renderer share; for core/io/render*.c only. */
+/* io/render_parts.h -- what the parts of the renderer share; for core/io/render*.c, and for
+ * core/chart/draw*.c, which takes texts, ticks and the PNG from here. */
 #ifndef IO_RENDER_PARTS_H
 #define IO_RENDER_PARTS_H
 

@@ -235,6 +235,34 @@ static void put_plugins(struct maker *m, cJSON *root, const struct summary *s)
     }
 }
 
+static void put_occurrence(struct maker *m, cJSON *into, const struct summary_watch *w, int dim)
+{
+    put_text(m, into, "array", w->array);
+    if (w->array) {
+        put_number(m, into, "particle", (double)w->particle);
+        put_vector(m, into, "x", w->x, dim);
+    }
+    put_text(m, into, "pass", w->pass);
+    put_count(m, into, "step", w->step);
+    put_number(m, into, "time", w->time);
+}
+
+static void put_watch(struct maker *m, cJSON *root, const struct summary *s)
+{
+    if (s->failure) {
+        cJSON *failure = put_object(m, root, "failure");
+        put_text(m, failure, "cause", s->failure->cause);
+        put_occurrence(m, failure, s->failure, s->dim);
+    }
+    cJSON *watch = put_object(m, root, "watch");
+    for (size_t i = 0; i < s->n_watch; i++) {
+        cJSON *one = put_object(m, watch, s->watch[i].cause);
+        put_count(m, one, "count", s->watch[i].n);
+        if (s->watch[i].happened)
+            put_occurrence(m, put_object(m, one, "first"), &s->watch[i], s->dim);
+    }
+}
+
 cJSON *summary_json(const struct summary *s)
 {
     struct maker m = {false};
@@ -242,6 +270,7 @@ cJSON *summary_json(const struct summary *s)
     put_text(&m, root, "status", s->status);
     if (s->reason)
         put_text(&m, root, "reason", s->reason);
+    put_watch(&m, root, s);
     put_text(&m, root, "scene", s->scene);
     put_text(&m, root, "title", s->title);
     put_particles(&m, root, s);

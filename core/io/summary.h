@@ -5,6 +5,7 @@
 #include "base/error.h"
 #include "io/output.h"
 #include <cjson/cJSON.h>
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -27,6 +28,17 @@ struct summary_plugin {
     const char *name, *version, *file;
     uint32_t abi_major, abi_minor;
 };
+/* What stopped a run, or was counted in it (n) and happened here first. */
+struct summary_watch {
+    const char *cause; /* "density", "time-step", ... */
+    uint64_t n;
+    bool happened;
+    const char *array, *pass; /* array NULL: no particle is to blame; pass NULL: no pass either */
+    int64_t particle;
+    double x[3];
+    uint64_t step;
+    double time;
+};
 /* Bytes held for a particle; search is the search's for neighbours, while it goes on. */
 struct summary_memory {
     double columns, mirrors, lists, places, ghosts, search;
@@ -40,8 +52,11 @@ struct summary_cost {
 };
 
 struct summary {
-    const char *status, *scene, *title; /* status: "done", "failed", "stopped"; scene: its path */
-    const char *reason;                 /* of a failure, or NULL */
+    const char *status, *scene, *title;  /* status: "done", "failed", "stopped"; scene: its path */
+    const char *reason;                  /* of a failure, or NULL */
+    const struct summary_watch *failure; /* the same for machines, or NULL */
+    const struct summary_watch *watch;   /* [n_watch]: what the scene has counted */
+    size_t n_watch;
     size_t n_array;
     const char *const *array_name;
     const uint64_t *array_n;

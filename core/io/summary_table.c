@@ -126,6 +126,19 @@ static void print_drift(const struct summary *s, FILE *out, int width)
             s->mass_drift);
 }
 
+/* What was counted, if anything was. */
+static void print_watch(const struct summary *s, FILE *out, int width)
+{
+    for (size_t i = 0; i < s->n_watch; i++) {
+        const struct summary_watch *w = &s->watch[i];
+        if (!w->happened)
+            continue;
+        label(out, width, "watch", "");
+        fprintf(out, "%s %llu times, first at step %llu, t = %.4g\n", w->cause,
+                (unsigned long long)w->n, (unsigned long long)w->step, w->time);
+    }
+}
+
 static void print_cost(const struct summary *s, FILE *out, int width)
 {
     char text[64];
@@ -169,6 +182,7 @@ void summary_table(const struct summary *s, FILE *out)
     print_probes(s, out, width);
     print_errors(s, out, width);
     print_drift(s, out, width);
+    print_watch(s, out, width);
     print_cost(s, out, width);
     if (s->picture) {
         label(out, width, "picture", "");

@@ -26,6 +26,7 @@ struct team {
     struct worker *worker;
     struct chunk *chunk;
     size_t n_worker, n_chunk;
+    size_t crowded; /* the first chunk that ended at a crowd: those behind it are not made */
     size_t n_placed, n_span, n_step; /* chunks that know where they go; what is in them */
 };
 
@@ -104,16 +105,35 @@ static void chunk_make(const struct team *t, const struct job *j, size_t n_group
     w->last = k;
 }
 
+/* Chunk k is the last that is needed, unless one before it is. */
+static void chunk_crowded(struct team *t, size_t k)
+{
+#pragma omp critical(neighbour_crowd)
+    if (k < t->crowded) {
+#pragma omp atomic write
+        t->crowded = k;
+    }
+}
+
 /* Which thread makes a chunk does not matter: what is in it depends on nothing but its groups. */
 static void team_run(const struct group_list *list, struct team *t, const struct job *j)
 {
 #pragma omp parallel for schedule(dynamic, 1) num_threads((int)t->n_worker)
     for (size_t k = 0; k < t->n_chunk; k++) {
         struct worker *w = &t->worker[worker_number()];
-        size_t placed;
+        size_t placed, crowded;
 
+#pragma omp atomic read
+        crowded = t->crowded;
+        if (k > crowded) {
+            continue;
+        }
         chunk_make(t, j, list->n_group, w, k);
         placed = chunk_made(t, k);
+        if (j->crowd.stops && w->crowd.n > 0) {
+            chunk_crowded(t, k);
+            continue;
+        }
         if (t->n_worker > 1) {
             chunks_move(list, t, w, placed);
         }
@@ -195,6 +215,28 @@ static int team_collect(struct group_list *list, struct team *t, struct error *e
     return 0;
 }
 
+/* What the workers have met of crowds: the first in the order of the destinations. Chunks are begun in
+ * order, so it is the same for any number of threads. */
+static int team_crowd(struct group_list *list, const struct team *t, struct error *e)
+{
+    struct overflow *all = &list->crowd;
+
+    for (size_t k = 0; k < t->n_worker; k++) {
+        const struct overflow *c = &t->worker[k].crowd;
+
+        if (c->n > 0 && (all->n == 0 || c->first < all->first)) {
+            all->first = c->first;
+            all->neighbours = c->neighbours;
+        }
+        all->n += c->n;
+    }
+    return all->stops && all->n > 0
+               ? error_set(e, EXIT_RUN, "destination %zu has %llu neighbours, more than %llu",
+                           all->first, (unsigned long long)all->neighbours,
+                           (unsigned long long)all->most)
+               : 0;
+}
+
 /* Whether every worker had the memory it needed; counts their work. */
 static int team_check(struct group_list *list, const struct team *t, struct error *e)
 {
@@ -213,7 +255,7 @@ static int team_check(struct group_list *list, const struct team *t, struct erro
 /* Shares the groups among threads. */
 static int list_fill(struct group_list *list, const struct job *j, int threads, struct error *e)
 {
-    struct team t = {.n_chunk = (list->n_group + CHUNK - 1) / CHUNK};
+    struct team t = {.n_chunk = (list->n_group + CHUNK - 1) / CHUNK, .crowded = SIZE_MAX};
     int status = -1;
 
     t.n_worker = (size_t)threads < t.n_chunk ? (size_t)threads : t.n_chunk;
@@ -231,6 +273,9 @@ static int list_fill(struct group_list *list, const struct job *j, int threads, 
     }
     team_run(list, &t, j);
     status = team_check(list, &t, e);
+    if (status == 0) {
+        status = team_crowd(list, &t, e);
+    }
     if (status == 0) {
         status = team_collect(list, &t, e);
     }
@@ -288,7 +333,12 @@ int filter_make(struct group_list *list, const struct cloud *dst, const struct c
 {
     double factor = (1 + skin) * (1 + SLACK);
     struct sources sources;
-    struct job j = {.dst = dst, .filter = filter, .scale = dst->scale * factor, .src = &sources};
+    struct job j = {.dst = dst,
+                    .filter = filter,
+                    .scale = dst->scale * factor,
+                    .src = &sources,
+                    .all = src,
+                    .symmetric = symmetric};
     size_t bytes = 0;
     void *search;
     int status = -1;
@@ -299,6 +349,8 @@ int filter_make(struct group_list *list, const struct cloud *dst, const struct c
         return -1;
     }
     list->symmetric = symmetric;
+    list->crowd.n = 0;
+    j.crowd = list->crowd;
     list->candidates = list->visited = list->search_bytes = 0;
     if (sources_make(&sources, dst, src, symmetric, factor, threads, e) != 0) {
         list->n_group = 0;

@@ -31,6 +31,15 @@ struct cloud {
     double scale;
 };
 
+/* Destinations with more neighbours than somebody foresees. */
+struct overflow {
+    uint64_t most;       /* more are too many: asked for by the caller; 0: nobody asks */
+    bool stops;          /* then nothing more is made, and making the list fails */
+    uint64_t n;          /* destinations with too many; of a list that fails not all are found */
+    size_t first;        /* the first of them */
+    uint64_t neighbours; /* that it has within reach (no skin, itself not counted) */
+};
+
 /* The sources of group g: span[s].base + step[span[s].first + k], k < span[s].count, for begin[g] <=
  * s < begin[g + 1]. A new span begins only where a source is UINT16_MAX or more beyond the base.
  * Spans and steps of a group follow those of the one before. */
@@ -42,6 +51,7 @@ struct group_list {
     uint64_t n_entry;
     size_t group_capacity, span_capacity, step_capacity;
     bool symmetric;
+    struct overflow crowd;
     double true_share; /* set by who counts (group_list_count): true pairs per entry of the list */
     const struct neighbour_manager *manager; /* who made it */
     /* Sources that the manager looked at, times the destinations that asked; of these pairs, those

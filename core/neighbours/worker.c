@@ -362,6 +362,55 @@ static void put_span(const struct job *j, struct worker *w, const struct rest *r
     w->n_step += n[BY_BOTH] + more + 2 * turns;
 }
 
+/* -- Crowds ------------------------------------------------------------------------------------ */
+
+/* Of what was found of a group those that lie within reach of destination i, but for itself. */
+static uint64_t neighbours_of(const struct job *j, const struct found *f, size_t i)
+{
+    const bool same = j->dst->x[0] == j->all->x[0];
+    uint64_t n = 0;
+
+    for (int by = 0; by < BY_SIDES; by++) {
+        for (size_t k = 0; k < f->n[by]; k++) {
+            size_t source = f->source[by][k];
+            double reach = j->dst->scale * j->dst->h[i], r2 = 0;
+
+            if (j->symmetric) {
+                reach = fmax(reach, j->all->scale * j->all->h[source]);
+            }
+            for (int a = 0; a < j->dst->dim; a++) {
+                double d = j->dst->x[a][i] - j->all->x[a][source];
+
+                r2 += d * d;
+            }
+            n += r2 < reach * reach && !(same && source == i);
+        }
+    }
+    return n;
+}
+
+/* Looked at only where a group together has more than one of it may: false if the list is to stop here. */
+static bool crowd_look(const struct job *j, struct worker *w, size_t group)
+{
+    const struct found *f = &w->found;
+    size_t end = (group + 1) * LANES < j->dst->n ? (group + 1) * LANES : j->dst->n;
+
+    if (j->crowd.most == 0 || f->n[BY_BOTH] + f->n[BY_LOWER] + f->n[BY_UPPER] <= j->crowd.most) {
+        return true;
+    }
+    for (size_t i = group * LANES; i < end; i++) {
+        uint64_t n = neighbours_of(j, f, i);
+
+        if (n > j->crowd.most && w->crowd.n++ == 0) {
+            w->crowd.first = i;
+            w->crowd.neighbours = n;
+        }
+    }
+    return !(j->crowd.stops && w->crowd.n > 0);
+}
+
+/* -- Lists ------------------------------------------------------------------------------------- */
+
 /* Appends the sources found, which ascend, to the lists: those of a group. */
 static void put(const struct job *j, struct worker *w, size_t group)
 {
@@ -370,7 +419,7 @@ static void put(const struct job *j, struct worker *w, size_t group)
     struct rest r = {.at = {0}};
     uint32_t base;
 
-    if (!w->no_memory &&
+    if (!w->no_memory && crowd_look(j, w, group) &&
         reserve(w, &w->step, &w->step_capacity, w->n_step + n + STEPS_MORE, sizeof *w->step)) {
         for (; rest_base(f, &r, &base); spans++) {
             if (!reserve(w, &w->span, &w->span_capacity, w->n_span + 1, sizeof *w->span)) {
@@ -460,7 +509,8 @@ void worker_make(const struct job *j, struct worker *w, size_t first, size_t las
 
     w->eight_at = SIZE_MAX;
     group_stretch(&next, j, w, first);
-    for (size_t group = first; group < last && !w->no_memory;) {
+    for (size_t group = first;
+         group < last && !w->no_memory && !(j->crowd.stops && w->crowd.n > 0);) {
         size_t end = group + 1;
         bool whole = stretch_within(&next, SPREAD_MOST);
 

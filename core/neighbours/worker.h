@@ -13,9 +13,12 @@ struct job {
     const struct sources *src;
     const struct filter *filter;
     const struct manager_calls *manager;
-    const void *search; /* the manager's */
-    double scale;       /* of the destinations' reach, skin and slack included */
-    uint64_t *count;    /* [n_group]: spans of each group */
+    const void *search;      /* the manager's */
+    double scale;            /* of the destinations' reach, skin and slack included */
+    uint64_t *count;         /* [n_group]: spans of each group */
+    const struct cloud *all; /* the sources as they stand in their array */
+    bool symmetric;
+    struct overflow crowd; /* what is asked */
 };
 
 /* What one thread owns. */
@@ -34,6 +37,7 @@ struct worker {
     struct bitset near, unsorted; /* leaves near a query; sources of a group */
     size_t left, last; /* of its chunks the first not yet moved into the list, the last */
     uint64_t visited, candidates;
+    struct overflow crowd; /* what was found */
     bool no_memory;
     char apart[64]; /* from the next one's cache lines */
 };

@@ -70,10 +70,11 @@ static size_t closing_pass(const struct plan *plan, size_t array, const struct r
 {
     const struct plan_array *a = &plan->array[array];
     size_t pass = NO_PASS, other;
-    if (!plan->integrator->saves_rates || r->kind != SPH_KICK || !a->in_two[r->property] ||
-        !a->in_floats[r->rate] || writers(plan, array, r->rate, &pass) != 1 ||
-        writers(plan, array, r->property, &other) || !plan->pass[pass].local ||
-        plan->pass[pass].max_sweeps || sums(plan, pass, array, r->property))
+    if (!integrator_saves_rates(plan->integrator) || r->kind != SPH_KICK ||
+        !a->in_two[r->property] || !a->in_floats[r->rate] ||
+        writers(plan, array, r->rate, &pass) != 1 || writers(plan, array, r->property, &other) ||
+        !plan->pass[pass].local || plan->pass[pass].max_sweeps ||
+        sums(plan, pass, array, r->property))
         return NO_PASS;
     for (size_t i = pass; i < plan->n_pass; i++) {
         const struct pass *p = &plan->pass[i];

@@ -128,7 +128,7 @@ static int add_rate(struct plan *plan, struct plan_array *a, const sph_rate *dec
     if (!bigger)
         return error_memory(e, "rates", sizeof *bigger);
     a->rate = bigger;
-    a->rate[a->n_rate - 1] = (struct rate){y, r, declared->kind, -1, -1, NO_PASS, false};
+    a->rate[a->n_rate - 1] = (struct rate){y, r, declared->kind, -1, {y, -1, -1}, NO_PASS, false};
     if (y == a->position)
         a->velocity = r;
     return 0;
@@ -167,11 +167,26 @@ static int add_rates(struct plan *plan, const sph_list *rates, size_t array, str
     return 0;
 }
 
-/* "a.0": what the integrator keeps of a column, held as that is; its index, or -1. */
-static int add_saved(struct plan_array *a, int column, struct error *e)
+/* Without a scheme nobody says what moves the position: where a function advances the velocity, that does. */
+static int add_motion(struct plan *plan, struct error *e)
+{
+    const sph_rate motion = SPH_RATE("x", "v", SPH_DRIFT);
+    for (size_t i = 0; i < plan->n_array; i++) {
+        struct plan_array *a = &plan->array[i];
+        bool kicked = false;
+        for (size_t k = 0; k < a->n_rate; k++)
+            kicked = kicked || strcmp(a->p.column[a->rate[k].property].name, motion.rate) == 0;
+        if (kicked && a->velocity < 0 && add_rate(plan, a, &motion, e))
+            return -1;
+    }
+    return 0;
+}
+
+/* "a.0", "a.1": what the integrator keeps of a column, held as that is; its index, or -1. */
+static int add_saved(struct plan_array *a, int column, enum slot slot, struct error *e)
 {
     const struct column *of = &a->p.column[column];
-    char *name = text_format("%s.0", of->name);
+    char *name = text_format("%s.%d", of->name, (int)slot - SLOT_0);
     if (!name)
         return error_memory(e, "a column", 1);
     int c = particles_add(&a->p, name, of->unit, "kept by the integrator", of->type, e);
@@ -192,10 +207,12 @@ static int add_integrator_columns(struct plan *plan, struct error *e)
             struct rate *r = &a->rate[k];
             /* A rate outlives its evaluation (it starts the next step), so a sort must carry it. */
             a->p.column[r->rate].state = a->p.column[r->property].state = true;
-            if (plan->integrator->saves_state && (r->kept = add_saved(a, r->property, e)) < 0)
-                return -1;
-            if (plan->integrator->saves_rates && r->kind == SPH_KICK && r->closed == NO_PASS &&
-                (r->saved = add_saved(a, r->rate, e)) < 0)
+            for (enum slot s = SLOT_0; s < SLOT_COUNT; s++)
+                if (integrator_keeps(plan->integrator, r->kind, s) &&
+                    (r->kept[s] = add_saved(a, r->property, s, e)) < 0)
+                    return -1;
+            if (integrator_saves_rates(plan->integrator) && r->kind == SPH_KICK &&
+                r->closed == NO_PASS && (r->saved = add_saved(a, r->rate, SLOT_0, e)) < 0)
                 return -1;
         }
     }
@@ -252,6 +269,8 @@ int columns_finish(struct plan *plan, struct error *e)
     for (size_t a = 0; plan->scheme && a < plan->n_array; a++)
         if (add_rates(plan, &plan->scheme->rates, a, e))
             return -1;
+    if (!plan->scheme && add_motion(plan, e))
+        return -1;
     for (size_t i = 0; i < plan->n_pass; i++)
         if (find_continued(plan, i, e))
             return -1;

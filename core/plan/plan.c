@@ -56,8 +56,14 @@ static int find_integrator(struct plan *plan, struct error *e)
                        : plan->scheme     ? plan->scheme->integrator
                                           : "kdk";
     plan->integrator = integrator_find(name);
-    if (plan->integrator)
+    if (plan->integrator) {
+        /* The scheme's number is for its own integrator. */
+        const struct integrator *own =
+            plan->scheme ? integrator_find(plan->scheme->integrator) : NULL;
+        if (own && isnan(s->time.cfl))
+            plan->cfl *= plan->integrator->knee / own->knee;
         return 0;
+    }
     size_t n;
     const char *const *known = integrator_names(&n);
     char near[256];

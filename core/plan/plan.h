@@ -98,11 +98,11 @@ struct pass {
 /* A rate of an array: column y advances with column r. */
 struct rate {
     int property, rate;
-    uint32_t kind; /* SPH_KICK or SPH_DRIFT */
-    int saved;     /* column of what the integrator keeps of the rate, or -1 */
-    int kept;      /* of the property, or -1 */
-    size_t closed; /* the pass that corrects the property as it makes the rate, or NO_PASS */
-    bool anew;     /* every evaluation overwrites the rate before anything reads it */
+    uint32_t kind;        /* SPH_KICK or SPH_DRIFT */
+    int saved;            /* column of what the integrator keeps of the rate, or -1 */
+    int kept[SLOT_COUNT]; /* of the property, by slot, or -1; the first is the property's own */
+    size_t closed;        /* the pass that corrects the property as it makes the rate, or NO_PASS */
+    bool anew;            /* every evaluation overwrites the rate before anything reads it */
 };
 #define NO_PASS SIZE_MAX
 

@@ -100,7 +100,7 @@ static void decide(const struct plan *plan, struct plan_array *a, const bool *fl
 /* With room for what the integrator will keep: of every rate, and of what it advances. */
 static int make_room(struct plan_array *a, struct error *e)
 {
-    const size_t n = a->p.n_column + 2 * a->n_rate + 1;
+    const size_t n = a->p.n_column + SLOT_COUNT * a->n_rate + 1;
     a->in_floats = calloc(n, sizeof *a->in_floats);
     a->in_two = calloc(n, sizeof *a->in_two);
     a->mirrored = calloc(n, sizeof *a->mirrored);

@@ -22,10 +22,13 @@ struct line {
     bool reads, writes, rate; /* rate: looked at, whether it is a number */
 };
 
-/* to = base + a (r - r0) of lines; r0 or r may be missing (-1): then without it. */
+/* to = w base + w_also also + a (r - r0) + a2 r2 of lines; other lines than to and base may be missing
+ * (-1): then without them.
+ * swaps: to and base trade their values instead. */
 struct action {
-    int to, base, r, r0;
-    double a;
+    int to, base, also, r, r0, r2;
+    double w, w_also, a, a2;
+    bool swaps;
 };
 
 struct program {
@@ -49,17 +52,22 @@ static int line_of(struct program *g, int column, uint32_t k, bool writes)
     return (int)i;
 }
 
-/* to = base + a (r - r0), of a component each; columns, -1: missing. */
-static void act(struct program *g, uint32_t k, int to, int base, double a, int r, int r0)
+/* The column's component as a line of an action; column -1: missing. */
+static int line_read(struct program *g, int column, uint32_t k)
 {
-    struct action x = {.a = a, .r = -1, .r0 = -1};
-    x.base = line_of(g, base, k, false);
-    if (r >= 0)
-        x.r = line_of(g, r, k, false);
-    if (r0 >= 0)
-        x.r0 = line_of(g, r0, k, false);
-    x.to = line_of(g, to, k, true);
-    g->action[g->n_action++] = x;
+    return column < 0 ? -1 : line_of(g, column, k, false);
+}
+
+/* to = base + a (r - r0), of a component each; columns, -1: missing. */
+static struct action *act(struct program *g, uint32_t k, int to, int base, double a, int r, int r0)
+{
+    struct action *x = &g->action[g->n_action++];
+    *x = (struct action){.a = a, .w = 1.0, .also = -1, .r2 = -1};
+    x->base = line_read(g, base, k);
+    x->r = line_read(g, r, k);
+    x->r0 = line_read(g, r0, k);
+    x->to = line_of(g, to, k, true);
+    return x;
 }
 
 /* Trades a rate with its copy, once all have been through the program. */
@@ -68,19 +76,48 @@ static bool trades(const struct rate *q)
     return q->saved >= 0 && q->anew;
 }
 
+/* The rate of a rate, or -1: of a velocity the acceleration. */
+static int rate_of(const struct plan_array *a, int column)
+{
+    for (size_t q = 0; q < a->n_rate; q++)
+        if (a->rate[q].property == column)
+            return a->rate[q].rate;
+    return -1;
+}
+
+static void add_combination(struct program *g, const struct op *op, double step,
+                            const struct rate *q, uint32_t k)
+{
+    const int second = op->a2 != 0.0 ? rate_of(g->array, q->rate) : -1;
+    int slot[SLOT_COUNT] = {SLOT_NOW}, n = 0;
+    for (int s = SLOT_NOW; s < SLOT_COUNT; s++)
+        if (op->weight[s] != 0.0) {
+            slot[n++] = s;
+            line_read(g, q->kept[s], k); /* before it is written, if it is */
+        }
+    struct action *x =
+        act(g, k, q->kept[op->to], q->kept[slot[0]], op->a * step, op->a != 0.0 ? q->rate : -1, -1);
+    x->w = op->weight[slot[0]];
+    if (n > 1) {
+        x->also = line_read(g, q->kept[slot[1]], k);
+        x->w_also = op->weight[slot[1]];
+    }
+    x->r2 = line_read(g, second, k);
+    x->a2 = op->a2 * step * step;
+}
+
 static void add(struct program *g, const struct op *op, double step, const struct rate *q,
                 uint32_t k)
 {
-    const bool drifts = q->kind == SPH_DRIFT;
-    const double dt = op->a * step;
+    if (!(op->on & q->kind))
+        return;
     switch (op->kind) {
-    case OP_KICK:
-    case OP_DRIFT:
-        if (drifts == (op->kind == OP_DRIFT))
-            act(g, k, q->property, q->property, dt, q->rate, -1);
+    case OP_COMBINE:
+        add_combination(g, op, step, q, k);
         break;
-    case OP_SAVE_STATE:
-        act(g, k, q->kept, q->property, 0.0, -1, -1);
+    case OP_SWAP:
+        act(g, k, q->kept[SLOT_0], q->property, 0.0, -1, -1)->swaps = true;
+        line_of(g, q->property, k, true);
         break;
     case OP_SAVE_RATES:
         if (q->saved >= 0 && !trades(q))
@@ -90,13 +127,8 @@ static void add(struct program *g, const struct op *op, double step, const struc
         if (q->closed !=
             NO_PASS) /* its pass has done so: what is left is to put both floats in order */
             act(g, k, q->property, q->property, 0.0, -1, -1);
-        else if (!drifts)
-            act(g, k, q->property, q->property, dt, q->rate, q->saved);
-        break;
-    case OP_FINISH_DRIFT:
-    case OP_FINISH_KICK:
-        if (drifts == (op->kind == OP_FINISH_DRIFT))
-            act(g, k, q->property, q->kept, dt, q->rate, -1);
+        else
+            act(g, k, q->property, q->property, op->a * step, q->rate, q->saved);
         break;
     case OP_EVALUATE:
         break;
@@ -110,7 +142,7 @@ static void add_all(struct program *g, size_t from, size_t to, double dt)
     for (size_t i = from; i < to; i++)
         for (size_t q = 0; q < a->n_rate; q++)
             for (uint32_t k = 0; k < a->p.column[a->rate[q].property].ncomp; k++)
-                add(g, &g->run->plan->integrator->op[i], dt, &a->rate[q], k);
+                add(g, &g->run->op[i], dt, &a->rate[q], k);
     for (size_t i = 0; i < g->n_line; i++)
         for (size_t q = 0; q < a->n_rate; q++)
             g->line[i].rate = g->line[i].rate || (g->line[i].writes && //
@@ -125,7 +157,8 @@ static int program_begin(struct program *g, const struct run *r, size_t array, s
         components += a->p.column[a->rate[q].property].ncomp;
     *g = (struct program){.run = r, .array = a};
     const size_t n = components * (r->plan->integrator->n_op + 1) + 1;
-    g->line = malloc(4 * (components + 1) * sizeof *g->line);
+    /* The property, its slots, the rate and its copy. */
+    g->line = malloc((SLOT_COUNT + 2) * (components + 1) * sizeof *g->line);
     g->action = malloc(n * sizeof *g->action);
     return g->line && g->action ? 0 : error_memory(e, "a step", n * sizeof *g->action);
 }
@@ -153,15 +186,44 @@ CLONES static void correct(double *y, const double *base, double a, const double
         y[i] = base[i] + a * (r[i] - r0[i]);
 }
 
-static void combine(double *y, const double *base, double a, const double *r, const double *r0,
-                    size_t n)
+CLONES static void blend(double *y, double w, const double *base, double w_also, const double *also,
+                         size_t n)
 {
-    if (r0)
-        correct(y, base, a, r, r0, n);
-    else if (r)
-        move(y, base, a, r, n);
+    CLONES_SIMD
+    for (size_t i = 0; i < n; i++)
+        y[i] = w * base[i] + w_also * also[i];
+}
+
+static void swap(double *restrict a, double *restrict b, size_t n)
+{
+    for (size_t i = 0; i < n; i++) {
+        const double other = a[i];
+        a[i] = b[i];
+        b[i] = other;
+    }
+}
+
+/* `at`: where the lines are. */
+static void combine(const struct action *x, double *const *at, size_t n)
+{
+    double *y = at[x->to];
+    const double *base = at[x->base];
+    if (x->swaps) {
+        swap(y, at[x->base], n);
+        return;
+    }
+    if (x->also >= 0) {
+        blend(y, x->w, base, x->w_also, at[x->also], n);
+        base = y;
+    }
+    if (x->r0 >= 0)
+        correct(y, base, x->a, at[x->r], at[x->r0], n);
+    else if (x->r >= 0)
+        move(y, base, x->a, at[x->r], n);
     else if (y != base)
         memcpy(y, base, n * sizeof *y);
+    if (x->r2 >= 0)
+        move(y, y, x->a2, at[x->r2], n);
 }
 
 enum { BAD_RATE = 1, BAD_PLACE = 2 };
@@ -196,11 +258,8 @@ static int run_chunk(const struct program *g, size_t first, double **at, double 
         if (!doubles && l->reads)
             column_load(c, l->k, first, n, at[i]);
     }
-    for (size_t i = 0; i < g->n_action; i++) {
-        const struct action *x = &g->action[i];
-        combine(at[x->to], at[x->base], x->a, x->r < 0 ? NULL : at[x->r],
-                x->r0 < 0 ? NULL : at[x->r0], n);
-    }
+    for (size_t i = 0; i < g->n_action; i++)
+        combine(&g->action[i], at, n);
     for (size_t i = 0; i < g->n_line; i++) {
         const struct line *l = &g->line[i];
         const struct column *c = &p->column[l->column];
@@ -280,7 +339,7 @@ static int advance(struct run *r, size_t from, size_t to, struct error *e)
     const struct integrator *table = r->plan->integrator;
     bool saves = false;
     for (size_t k = from; k < to; k++)
-        saves = saves || table->op[k].kind == OP_SAVE_RATES;
+        saves = saves || r->op[k].kind == OP_SAVE_RATES;
     for (size_t a = 0; a < r->plan->n_array; a++) {
         struct program g;
         struct skin_change change = {NAN, NAN};
@@ -319,25 +378,42 @@ static bool has_finish(const struct plan *plan)
     return false;
 }
 
-int run_advance(struct run *r, struct error *e)
+/* The table of this step. What is left of the last one goes by the old. */
+static int take_table(struct run *r, struct error *e)
 {
     const struct integrator *table = r->plan->integrator;
+    if (table->adapt) {
+        if (run_settle(r, e))
+            return -1;
+        memcpy(r->adapted, table->op, table->n_op * sizeof *table->op);
+        table->adapt(r->adapted, r->step, r->dt_last > 0.0 ? r->dt / r->dt_last : NAN);
+    }
+    r->op = table->adapt ? r->adapted : table->op;
+    r->dt_last = r->dt;
+    return 0;
+}
+
+int run_advance(struct run *r, struct error *e)
+{
+    const size_t n_op = r->plan->integrator->n_op;
     const double begin = r->time;
+    if (take_table(r, e))
+        return -1;
     const bool defers = r->defer && !has_finish(r->plan);
-    for (size_t k = 0, end; k < table->n_op; k = end) {
-        for (end = k; end < table->n_op && table->op[end].kind != OP_EVALUATE;)
+    for (size_t k = 0, end; k < n_op; k = end) {
+        for (end = k; end < n_op && r->op[end].kind != OP_EVALUATE;)
             end++;
-        if (end == table->n_op && defers) {
+        if (end == n_op && defers) {
             r->left = end - k;
             r->left_dt = r->dt;
             break;
         }
         if (end > k && advance(r, k, end, e))
             return -1;
-        if (end == table->n_op)
+        if (end == n_op)
             break;
-        r->time = begin + table->op[end].a * r->dt;
-        const struct op *next = end + 1 < table->n_op ? &table->op[end + 1] : NULL;
+        r->time = begin + r->op[end].a * r->dt;
+        const struct op *next = end + 1 < n_op ? &r->op[end + 1] : NULL;
         r->correct = next && next->kind == OP_CORRECT ? next->a * r->dt : 0.0;
         const int status = run_passes(r, MOMENT_EVALUATE, e);
         r->correct = 0.0;

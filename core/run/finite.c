@@ -3,10 +3,9 @@
  * (run.look). So the pass is found while the state that it worked on is still good. Reads
  * columns, no more. */
 #include "base/clones.h"
-#include "run/run.h"
+#include "run/watch.h"
 #include <float.h>
 #include <math.h>
-#include <stdio.h>
 
 /* By the sum of what is 0 for a number and none for others. */
 CLONES bool any_not_finite(const double *value, size_t n)
@@ -78,21 +77,33 @@ static bool find_bad(const struct plan_array *a, int column, bool finite, size_t
 static int tell(const struct run *r, const char *who, const struct plan_array *a, int column,
                 size_t i, double value, struct error *e)
 {
-    const struct column *x = &a->p.column[a->position];
-    char place[128] = "";
-    size_t used = 0;
-    for (int c = 0; c < r->plan->dim && used < sizeof place; c++)
-        used += (size_t)snprintf(place + used, sizeof place - used, "%s%g", c ? ", " : "",
-                                 column_get(x, (uint32_t)c, i));
-    return error_set(e, EXIT_RUN,
-                     "%s made \"%s\" %s for particle %lld of array \"%s\" at x = (%s), step %llu, "
-                     "t = %g",
-                     who, a->p.column[column].name, isnan(value) ? "not a number" : "infinite",
-                     (long long)((const int64_t *)a->p.column[a->id].data)[i], a->p.name, place,
-                     (unsigned long long)r->step, r->time);
+    const char *name = a->p.column[column].name;
+    const struct sign s = {
+        .cause = WATCH_NOT_FINITE, .array = a, .particle = i, .by = who, .column = name};
+    return watch_fail(r, &s, e, "%s made \"%s\" %s for particle %lld of array \"%s\"", who, name,
+                      isnan(value) ? "not a number" : "infinite",
+                      (long long)((const int64_t *)a->p.column[a->id].data)[i], a->p.name);
 }
 
-static int check(const struct run *r, const struct pass *p, bool work, struct error *e)
+/* A pass that goes on with a sum hides nothing of what earlier ones put into it. */
+static bool goes_on(const struct pass *p, int column)
+{
+    for (uint32_t k = 0; k < p->use.item->props.count; k++)
+        if (p->dst.column[k] == column && p->continues[k])
+            return true;
+    return false;
+}
+
+bool finite_finished(const struct run *r, const struct pass *p, size_t array, int column, bool sums)
+{
+    for (const struct pass *q = p + 1; q < r->plan->pass + r->plan->n_pass; q++)
+        if (q->moment == p->moment && pass_writes(q, array, column) &&
+            !(sums && goes_on(q, column)))
+            return false;
+    return true;
+}
+
+static int check(const struct run *r, const struct pass *p, bool trace, struct error *e)
 {
     const struct plan_array *a = &r->plan->array[p->dst.array];
     for (uint32_t k = 0; k < p->use.item->props.count; k++) {
@@ -100,7 +111,9 @@ static int check(const struct run *r, const struct pass *p, bool work, struct er
         const int column = p->dst.column[k];
         size_t i = 0;
         double value = 0.0;
-        if (column >= 0 && (work || !(prop->access & SPH_WORK)) &&
+        if (column >= 0 &&
+            (trace ? finite_finished(r, p, p->dst.array, column, true)
+                   : !(prop->access & SPH_WORK)) &&
             pass_writes(p, p->dst.array, column) && find_bad(a, column, false, &i, &value))
             return tell(r, p->name, a, column, i, value, e);
     }
@@ -122,8 +135,7 @@ int finite_trace(const struct run *r, struct error *e)
     return 0;
 }
 
-/* The last pass of an evaluation that writes a column. */
-static const char *writer_of(const struct run *r, size_t array, int column)
+const char *finite_writer(const struct run *r, size_t array, int column)
 {
     const char *name = "the evaluation";
     for (size_t i = 0; i < r->plan->n_pass; i++)
@@ -149,7 +161,7 @@ int finite_rates(struct run *r, struct error *e)
                 continue;
             if (isnan(value) && finite_trace(r, e))
                 return -1;
-            return tell(r, writer_of(r, k, column), a, column, i, value, e);
+            return tell(r, finite_writer(r, k, column), a, column, i, value, e);
         }
     }
     return 0;

@@ -1,6 +1,6 @@
 /* run/lists.c -- neighbour lists and ghosts of a run: made when they are no longer right, reused until then.
  * Everything is decided by displacements and counters, never by time, so that a run repeats itself. */
-#include "run/run.h"
+#include "run/watch.h"
 
 #include "neighbours/range.h"
 
@@ -257,11 +257,14 @@ static int make_ghosts(struct run *r, struct error *e)
     for (size_t a = 0; a < r->plan->n_array; a++)
         margin = fmax(margin, r->h_high[a]);
     margin = margin * support(r->plan) * (1.0 + r->skin) + largest_overshoot(r);
+    if (watch_reach(r, margin, e))
+        return -1;
     for (size_t a = 0; a < r->plan->n_array; a++) {
         struct particles *p = &r->plan->array[a].p;
-        if (particles_resize(p, p->n, 0, e) ||
-            ghosts_make(&r->ghosts[a], &r->plan->scene->box, p, margin, e))
+        if (particles_resize(p, p->n, 0, e))
             return -1;
+        if (ghosts_make(&r->ghosts[a], &r->plan->scene->box, p, margin, e))
+            return watch_no_ghosts(r, e);
         for (size_t c = 0; c < p->n_column; c++)
             run_changed(r, a, (int)c);
         r->stale[a][r->plan->array[a].position] = false;
@@ -279,9 +282,17 @@ static int make_list(struct run *r, size_t k, bool counted, struct error *e)
     const struct cloud dst = cloud_of(r, l->dst, l->frame, false);
     const struct cloud src = cloud_of(r, l->src, l->frame, true);
     struct group_list *list = &r->list[k];
+    const struct scene_watch *rule = &r->watch->scene[WATCH_NEIGHBOURS];
+    list->crowd.most = rule->action == WATCH_OFF ? 0 : (uint64_t)rule->limit;
+    list->crowd.stops = rule->action == WATCH_STOP;
     if (group_list_make(list, &dst, &src, l->reach == SPH_SYMMETRIC, r->skin, r->plan->manager,
-                        r->threads, e))
-        return error_prefix(e, "neighbours of \"%s\"", r->plan->array[l->dst].p.name);
+                        r->threads, e) &&
+        !(list->crowd.n && list->crowd.stops)) {
+        error_prefix(e, "neighbours of \"%s\"", r->plan->array[l->dst].p.name);
+        return watch_no_lists(r, e);
+    }
+    if (watch_crowd(r, k, e))
+        return -1;
     if (counted && list->n_entry)
         list->true_share = ((double)group_list_count(list, &dst, &src, r->threads) -
                             (l->dst == l->src ? (double)dst.n : 0.0)) /
@@ -356,7 +367,9 @@ int run_lists(struct run *r, bool within, struct error *e)
     int status = 0;
     if (!r->lists_made || !holds(r, 0)) {
         bool sort = !within && (!r->lists_made || ++r->builds_since_sort >= BUILDS_PER_SORT);
-        status = widen_places(r, e);
+        status = watch_places(r, true, e);
+        if (!status)
+            status = widen_places(r, e);
         if (!within && !status) {
             for (size_t a = 0; a < r->plan->n_array; a++)
                 sides_wrap(&r->plan->scene->box, &r->plan->array[a].p);
@@ -367,6 +380,7 @@ int run_lists(struct run *r, bool within, struct error *e)
             if (sort) {
                 r->builds_since_sort = 0;
                 r->cost.sorts++;
+                r->watch->sorted = true;
             }
         }
         if (!status)

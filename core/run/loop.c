@@ -1,5 +1,6 @@
 /* run/loop.c -- the step loop: choose dt, advance, log, snapshot; then the summary. */
 #include "run/loop_state.h"
+#include "run/watch.h"
 #include <cjson/cJSON.h>
 #include <math.h>
 #include <omp.h>
@@ -54,8 +55,8 @@ static int choose_dt(struct loop *l, double *dt, struct error *e)
     if (isnan(full) && finite_trace(r, e))
         return -1;
     if (isnan(full))
-        return error_set(e, EXIT_RUN, "the time step is no longer a number at step %llu, t = %g",
-                         (unsigned long long)r->step, r->time);
+        return watch_fail(r, &(struct sign){.cause = WATCH_NOT_FINITE}, e,
+                          "the time step is no longer a number");
     full = fmin(fmin(full, l->scene->time.dt_max), r->proposed);
     r->proposed = INFINITY;
     /* Later on nothing may be left that bounds it, as when the last particle has gone: it grows on. */
@@ -67,10 +68,8 @@ static int choose_dt(struct loop *l, double *dt, struct error *e)
         full = r->step == 0 ? FIRST * full : fmin(full, GROWTH * l->full);
     l->full = full;
     double left = target(l) - r->time;
-    double tiny = 1e-12 * fmax(fabs(r->time), l->end - l->begin);
-    if (!(full > tiny * 1e-3))
-        return error_set(e, EXIT_RUN, "the time step collapsed to %g at step %llu, t = %g", full,
-                         (unsigned long long)r->step, r->time);
+    if (watch_time_step(r, full, l->end - l->begin, e))
+        return -1;
     *dt = left <= full * (1.0 + 1e-9) ? left : left < 2.0 * full ? 0.5 * left : full;
     return 0;
 }
@@ -123,10 +122,11 @@ static int after_step(struct loop *l, struct error *e)
     if (!isfinite(totals_energy(&l->last)) && finite_trace(r, e))
         return -1;
     if (!isfinite(totals_energy(&l->last)))
-        return error_set(e, EXIT_RUN, "the energy is no longer a number at step %llu, t = %g",
-                         (unsigned long long)r->step, r->time);
-    if (logged && loop_log(l, e))
+        return watch_fail(r, &(struct sign){.cause = WATCH_NOT_FINITE}, e,
+                          "the energy is no longer a number");
+    if (logged && (watch_energy(r, &l->first, &l->last, e) || loop_log(l, e)))
         return -1;
+    watch_step(r);
     while (by_time && l->next_log <= r->time)
         l->next_log += l->scene->output.log_every;
     if (!last && r->time >= target(l)) {
@@ -172,10 +172,12 @@ static int steps(struct loop *l, struct error *e)
             return -1;
     if (run_settle(r, e))
         return -1;
-    if (r->step && r->plan->integrator->op[r->plan->integrator->n_op - 1].kind != OP_CORRECT) {
+    if (r->step && !integrator_ends_evaluated(r->plan->integrator)) {
         /* The last evaluation was in mid-step: bring what is derived up to the end. */
         if (run_passes(r, MOMENT_EVALUATE, e))
             return -1;
+    } else if (watch_state(r, e)) {
+        return -1;
     }
     r->cost.loop = loop_seconds(l);
     return loop_snapshot(l, e);
@@ -211,8 +213,10 @@ static int loop_begin(struct loop *l, struct plan *plan, struct error *e)
 static void keep_failed(struct loop *l, const struct error *e)
 {
     struct error ignored = {0};
-    if (l->run.step > 0 && loop_snapshot(l, &ignored))
+    if ((l->run.step > 0 || (l->run.watch && l->run.watch->failure.happened)) &&
+        loop_snapshot(l, &ignored))
         ignored.text[0] = '\0';
+    /* No checkpoint: the last one is of a good step, and a later one would be taken for it. */
     loop_summarise(l, "failed", e->text, &ignored);
 }
 

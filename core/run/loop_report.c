@@ -5,6 +5,7 @@
 #include "io/summary.h"
 #include "run/loop_state.h"
 #include "run/report.h"
+#include "run/watch.h"
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
@@ -64,6 +65,8 @@ struct summary_parts {
     struct summary_plugin *plugin;
     struct summary_error *error;
     struct summary_probe *probe;
+    struct summary_watch watch[WATCH_CAUSES], failure;
+    size_t n_watch;
     size_t n_error, n_probe;
     cJSON *plan;
 };
@@ -109,6 +112,32 @@ static int parts_make(const struct loop *l, struct summary_parts *q, bool good, 
                : 0;
 }
 
+static struct summary_watch watch_of(enum watch_cause cause, const struct failure *f, uint64_t n)
+{
+    struct summary_watch w = {.cause = watch_keys[cause],
+                              .n = n,
+                              .happened = f->happened,
+                              .array = f->array ? f->array->p.name : NULL,
+                              .pass = f->pass[0] ? f->pass : NULL,
+                              .particle = f->particle,
+                              .step = f->step,
+                              .time = f->time};
+    memcpy(w.x, f->x, sizeof w.x);
+    return w;
+}
+
+/* What the scene wants counted, and what stopped the run. */
+static void watch_make(const struct loop *l, struct summary_parts *q)
+{
+    const struct watch *w = l->run.watch;
+    for (size_t c = 0; w && c < WATCH_CAUSES; c++)
+        if (w->scene[c].action == WATCH_COUNT)
+            q->watch[q->n_watch++] =
+                watch_of((enum watch_cause)c, &w->count[c].first, w->count[c].n);
+    if (w)
+        q->failure = watch_of(w->failure.cause, &w->failure, 1);
+}
+
 /* Bytes for a particle, item by item. */
 static struct summary_memory memory_of(const struct loop *l)
 {
@@ -141,12 +170,18 @@ int loop_summarise(struct loop *l, const char *status, const char *reason, struc
         parts_free(&q);
         return -1;
     }
+    if (reason && r->watch)
+        watch_step(&l->run); /* one that was broken off counts as well */
+    watch_make(l, &q);
     struct rusage usage;
     getrusage(RUSAGE_SELF, &usage);
     struct summary s = {.status = status,
                         .scene = l->options->scene_path,
                         .title = l->scene->title,
                         .reason = reason,
+                        .failure = reason && q.failure.happened ? &q.failure : NULL,
+                        .watch = q.watch,
+                        .n_watch = q.n_watch,
                         .n_array = r->plan->n_array,
                         .array_name = q.name,
                         .array_n = q.count,

@@ -2,6 +2,7 @@
  * sweeps repeated where a pass iterates, reductions taken. */
 #include "run/chunks.h"
 #include "run/closing.h"
+#include "run/watch.h"
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>
@@ -168,8 +169,11 @@ static int run_pass(struct run *r, struct pass *p, struct error *e)
         }
     }
     ranges_free(&ranges);
+    r->watch->done = (size_t)(p - r->plan->pass) + 1;
     if (!status && (r->look || r->audit))
         status = finite_pass(r, p, e);
+    if (!status)
+        status = watch_pass(r, p, e);
     p->seconds += omp_get_wtime() - begin - (r->cost.neighbour - other);
     return status;
 }
@@ -199,6 +203,9 @@ static void bound_dt(struct run *r)
 
 int run_passes(struct run *r, enum moment moment, struct error *e)
 {
+    r->watch->done = 0;
+    if (moment == MOMENT_EVALUATE && watch_state(r, e))
+        return -1;
     if (moment != MOMENT_FINISH && run_lists(r, false, e))
         return -1;
     for (size_t i = 0; i < r->plan->n_pass; i++) {
@@ -211,5 +218,9 @@ int run_passes(struct run *r, enum moment moment, struct error *e)
     if (moment != MOMENT_EVALUATE)
         return 0;
     bound_dt(r);
-    return finite_rates(r, e);
+    if (finite_rates(r, e))
+        return -1;
+    r->watch->sorted = false;
+    r->watch->evaluated = true;
+    return 0;
 }

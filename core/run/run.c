@@ -1,5 +1,5 @@
 /* run/run.c -- makes and frees a run's working memory. */
-#include "run/run.h"
+#include "run/watch.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -92,7 +92,7 @@ int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool 
             return error_memory(e, "the run", columns);
         memset(r->mirror_old[a], MIRROR_OLD, columns);
     }
-    if (hold(plan, e))
+    if (hold(plan, e) || watch_open(r, e))
         return -1;
     return audit ? audit_open(r, e) : 0;
 }
@@ -101,6 +101,7 @@ void run_free(struct run *r)
 {
     size_t n = r->plan ? r->plan->n_array : 0;
     audit_close(r);
+    watch_close(r);
     for (size_t a = 0; a < n; a++) {
         if (r->ghosts)
             ghosts_fini(&r->ghosts[a]);

@@ -11,6 +11,7 @@
 #include <math.h>
 
 struct audit;
+struct watch;
 
 /* Sums over all real particles. */
 struct totals {
@@ -57,6 +58,7 @@ struct run {
     double proposed;      /* bound on the next dt, cfl not applied; INFINITY: none */
     struct run_cost cost;
     struct audit *audit; /* NULL: off */
+    struct watch *watch; /* watch.h */
     bool look;           /* all that passes write in this step is looked at: finite.c */
     bool suspect;        /* a rate may be no number */
     /* advance.c */
@@ -64,6 +66,10 @@ struct run {
     bool defer;     /* the next step may do what is left of this one: run_settle */
     size_t left;    /* operations left, from the table's end; dt: left_dt */
     double left_dt;
+    const struct op *op; /* the step's table: the integrator's, or what is adapted to this step */
+    struct op adapted[OPS_MAX];
+    double
+        dt_last; /* of the step before; 0: there was none. Part of the state, where a table is adapted */
 };
 
 int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool audit,
@@ -148,6 +154,14 @@ int finite_pass(const struct run *r, const struct pass *p, struct error *e);
 int finite_rates(struct run *r, struct error *e);
 /* When something else is no number: the first pass of which something is. 0: there is none. */
 int finite_trace(const struct run *r, struct error *e);
+
+/* finite.c: the last pass of an evaluation that writes a column. */
+const char *finite_writer(const struct run *r, size_t array, int column);
+
+/* finite.c: no later pass of the moment writes the column as well: what stands there stays;
+ * with `sums` one may add to it. */
+bool finite_finished(const struct run *r, const struct pass *p, size_t array, int column,
+                     bool sums);
 
 /* finite.c: is one of n numbers not finite? */
 bool any_not_finite(const double *value, size_t n);

@@ -1,7 +1,7 @@
 /* run/run_store.c -- a run's working state goes into a checkpoint and comes back with every bit: particles and
  * ghosts, lists and what they were made from, what the integrator has left to do, plugins' own states. Nothing
  * is settled or made anew for it, since that would change the run. */
-#include "run/run.h"
+#include "run/watch.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -17,6 +17,7 @@ static int numbers_store(struct run *r, struct store *s, struct error *e)
                 {"dt_bound", &r->dt_bound},
                 {"proposed", &r->proposed},
                 {"left_dt", &r->left_dt},
+                {"dt_last", &r->dt_last},
                 {"quantum", &r->quantum},
                 {"loop_s", &r->cost.loop},
                 {"neighbour_s", &r->cost.neighbour},
@@ -53,6 +54,10 @@ static int numbers_store(struct run *r, struct store *s, struct error *e)
         store_count(s, "left", &r->left, e) ||
         store_block(s, "next_id", STORE_I64, &r->plan->next_id, 1, e))
         return -1;
+    if (store_block(s, "adapted", STORE_U8, r->adapted, sizeof r->adapted, e))
+        return -1;
+    if (s->reading) /* what is left goes by the table of its step */
+        r->op = r->plan->integrator->adapt ? r->adapted : r->plan->integrator->op;
     if (r->left > r->plan->integrator->n_op)
         return store_broken(s, e, "more operations are left than the integrator has");
     return 0;
@@ -198,7 +203,8 @@ static int states_store(struct run *r, struct store *s, struct error *e)
 int run_store(struct run *r, struct store *s, struct error *e)
 {
     return numbers_store(r, s, e) || tables_store(r, s, e) || costs_store(r, s, e) ||
-                   arrays_store(r, s, e) || lists_store(r, s, e) || states_store(r, s, e)
+                   arrays_store(r, s, e) || lists_store(r, s, e) || watch_store(r, s, e) ||
+                   states_store(r, s, e)
                ? -1
                : 0;
 }

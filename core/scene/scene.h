@@ -125,6 +125,27 @@ struct scene_probe {
     double expected;     /* NaN: none */
 };
 
+/* Signs that a run has gone wrong, and what is done about each: "watch". */
+enum watch_cause {
+    WATCH_NOT_FINITE,
+    WATCH_DENSITY,
+    WATCH_INTERNAL_ENERGY,
+    WATCH_ESCAPED,
+    WATCH_TIME_STEP,
+    WATCH_ENERGY,
+    WATCH_NEIGHBOURS,
+    WATCH_CAUSES
+};
+extern const char *const watch_keys[WATCH_CAUSES];
+enum watch_action { WATCH_STOP, WATCH_COUNT, WATCH_OFF };
+struct scene_watch {
+    enum watch_action action;
+    double limit; /* escaped: sizes of the box; time-step: of the longest; energy: of that at the
+                        * start; neighbours: so many */
+    double scale; /* energy: to compare with; NaN: that at the start */
+    const char *where; /* escaped: region that nobody may leave; or NULL */
+};
+
 struct scene_memory; /* what the structures stand in: private to scene.c */
 
 struct scene {
@@ -170,6 +191,7 @@ struct scene {
         const char *manager; /* NULL: the plan chooses */
     } neighbours;            /* optional key "neighbours": {"skin": 0.1, "manager": "octree"} */
     const char *precision;   /* "double", "mixed", "single"; NULL: the scheme's */
+    struct scene_watch watch[WATCH_CAUSES];
     struct scene_compare *compare;
     size_t n_compare;
     struct scene_probe *probe;

@@ -35,6 +35,7 @@ int scene_scheme(struct scene *s, const cJSON *node, struct error *e);
 int scene_compares(struct scene *s, const cJSON *node, struct error *e);
 int scene_probes(struct scene *s, const cJSON *node, struct error *e);
 int scene_output(struct scene *s, const cJSON *node, struct error *e);
+int scene_watches(struct scene *s, const cJSON *node, struct error *e);
 int scene_time(struct scene *s, const cJSON *node, struct error *e);
 
 #define COUNT(array) (sizeof(array) / sizeof *(array))

@@ -5,6 +5,7 @@
 #include <sph/eos.h>
 
 extern const sph_eos ideal_gas; /* ideal_gas.c */
+extern const sph_eos linear;    /* linear.c */
 extern const sph_eos tait;      /* tait.c */
 
 #endif

@@ -3,7 +3,7 @@
  * dimension the geometry is a wall at x = 0, seen from both sides. */
 #include "exact.h"
 
-#include <math.h>
+static const sph_item item;
 
 enum { PARAM_GAMMA, PARAM_RHO0, PARAM_V0 };
 static const sph_param params[] = {
@@ -12,72 +12,41 @@ static const sph_param params[] = {
     SPH_PARAM("v0", "m/s", "speed of fall", 1, 1e-300, 1e300),
 };
 
-enum { PROP_X, PROP_RHO, PROP_P, PROP_V, PROP_U };
 static const sph_prop props[] = {
-    SPH_PROP("x", "m", "position", SPH_VECTOR, SPH_DST_READ, NAN),
-    SPH_PROP("rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_WRITE, 0),
-    SPH_PROP("p", "J/m^d", "pressure", SPH_SCALAR, SPH_DST_WRITE, 0),
-    SPH_PROP("v", "m/s", "velocity", SPH_VECTOR, SPH_DST_WRITE, 0),
-    SPH_PROP("u", "J/kg", "specific internal energy", SPH_SCALAR, SPH_DST_WRITE, 0),
+    EXACT_X, EXACT_RHO, EXACT_P, EXACT_V, EXACT_U,
 };
 
-struct state {
-    double rho, p, u;
-    double v; /* radial */
+struct implosion {
+    double gamma, rho0, v0, t;
+    uint32_t dim;
 };
 
-/* At radius r and time t. Behind the shock (speed (gamma - 1) v0 / 2) the gas rests and holds the
- * energy of its fall; ahead of it, it falls freely and piles up with its geometry. */
-static struct state noh_at(const sph_batch *b, double r, double t)
+/* Behind the shock (speed (gamma - 1) v0 / 2) the gas rests and holds the energy of its fall; ahead
+ * of it, it falls freely and piles up with its geometry. */
+static void at(const void *of, struct exact_point *q)
 {
-    const double gamma = b->param[PARAM_GAMMA];
-    const double rho0 = b->param[PARAM_RHO0];
-    const double v0 = b->param[PARAM_V0];
-    struct state s = {rho0, 0, 0, -v0};
+    const struct implosion *n = of;
+    const double r = hypot(hypot(q->x[0], q->x[1]), q->x[2]);
 
-    if (r < (gamma - 1) / 2 * v0 * t) {
-        s.rho = rho0 * pow((gamma + 1) / (gamma - 1), b->dim);
-        s.u = v0 * v0 / 2;
-        s.p = (gamma - 1) * s.rho * s.u;
-        s.v = 0;
-    } else if (r > 0) {
-        s.rho = rho0 * pow(1 + v0 * t / r, (double)b->dim - 1);
+    if (r < (n->gamma - 1) / 2 * n->v0 * n->t) {
+        q->rho = n->rho0 * pow((n->gamma + 1) / (n->gamma - 1), n->dim);
+        q->u = n->v0 * n->v0 / 2;
+        q->p = (n->gamma - 1) * q->rho * q->u;
+        return;
     }
-    return s;
+    q->rho = n->rho0;
+    if (r > 0)
+        q->rho *= pow(1 + n->v0 * n->t / r, (double)n->dim - 1);
+    for (int c = 0; c < 3 && r > 0; c++)
+        q->v[c] = -n->v0 * q->x[c] / r;
 }
 
 static sph_status run(const sph_batch *b)
 {
-    double *x[3] = {NULL}, *v[3] = {NULL};
+    const struct implosion n = {b->param[PARAM_GAMMA], b->param[PARAM_RHO0], b->param[PARAM_V0],
+                                b->time, b->dim};
 
-    if (b->real != SPH_F64)
-        return b->host->fail(b->host, SPH_E_UNKNOWN,
-                             "noh: single precision is not implemented yet");
-
-    double *rho = exact_column(b, PROP_RHO, 0);
-    double *p = exact_column(b, PROP_P, 0);
-    double *u = exact_column(b, PROP_U, 0);
-    for (uint32_t c = 0; c < b->dim; c++) {
-        x[c] = exact_column(b, PROP_X, c);
-        v[c] = exact_column(b, PROP_V, c);
-    }
-
-    for (uint64_t i = b->first; i < b->first + b->count; i++) {
-        double r2 = 0;
-        for (uint32_t c = 0; c < b->dim; c++)
-            r2 += x[c][i] * x[c][i];
-        const double r = sqrt(r2);
-        const struct state s = noh_at(b, r, b->time);
-        if (rho)
-            rho[i] = s.rho;
-        if (p)
-            p[i] = s.p;
-        if (u)
-            u[i] = s.u;
-        for (uint32_t c = 0; c < b->dim && v[c]; c++)
-            v[c][i] = r > 0 ? s.v * x[c][i] / r : 0;
-    }
-    return SPH_OK;
+    return exact_each(b, &item, at, &n);
 }
 
 static const sph_item item = {

@@ -4,8 +4,9 @@
  * section 4.6. */
 #include "exact.h"
 
-#include <math.h>
 #include <stdlib.h>
+
+static const sph_item item;
 
 static const sph_param params[] = {
     SPH_PARAM("rho_l", "kg/m^d", "density left of x0", 1, 0, 1e300),
@@ -18,13 +19,12 @@ static const sph_param params[] = {
     SPH_PARAM("x0", "m", "where the two states meet", 0, -1e300, 1e300),
 };
 
-enum { PROP_X, PROP_RHO, PROP_P, PROP_V, PROP_U };
 static const sph_prop props[] = {
     SPH_PROP("x", "m", "position; only its first component matters", SPH_VECTOR, SPH_DST_READ, NAN),
-    SPH_PROP("rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_WRITE, 0),
-    SPH_PROP("p", "J/m^d", "pressure", SPH_SCALAR, SPH_DST_WRITE, 0),
-    SPH_PROP("v", "m/s", "velocity", SPH_VECTOR, SPH_DST_WRITE, 0),
-    SPH_PROP("u", "J/kg", "specific internal energy", SPH_SCALAR, SPH_DST_WRITE, 0),
+    EXACT_RHO,
+    EXACT_P,
+    EXACT_V,
+    EXACT_U,
 };
 
 struct side {
@@ -146,7 +146,7 @@ static sph_status create(const sph_host *host, const sph_config *c, uint32_t dim
         status = solve(f);
     if (status != SPH_OK) {
         free(f);
-        return host->fail(host, status, "riemann: no pressure joins the two states");
+        return exact_fail(host, status, "no pressure joins the two states");
     }
     *state = f;
     return SPH_OK;
@@ -219,34 +219,29 @@ static struct side sample(const struct fan *f, double s)
     return mirrored(sample_left(&r, f, f->p, -f->u, -s));
 }
 
+struct moment {
+    const struct fan *fan;
+    double t;
+};
+
+static void at(const void *of, struct exact_point *q)
+{
+    const struct moment *m = of;
+    const struct fan *f = m->fan;
+    const double distance = q->x[0] - f->x0;
+    const struct side s = m->t > 0 ? sample(f, distance / m->t) : distance < 0 ? f->l : f->r;
+
+    q->rho = s.rho;
+    q->p = s.p;
+    q->u = s.rho > 0 ? s.p / ((f->gamma - 1) * s.rho) : 0;
+    q->v[0] = s.u;
+}
+
 static sph_status run(const sph_batch *b)
 {
-    const struct fan *f = b->state;
+    const struct moment m = {b->state, b->time};
 
-    if (b->real != SPH_F64)
-        return b->host->fail(b->host, SPH_E_UNKNOWN,
-                             "riemann: single precision is not implemented yet");
-
-    const double *x = exact_column(b, PROP_X, 0);
-    double *rho = exact_column(b, PROP_RHO, 0);
-    double *p = exact_column(b, PROP_P, 0);
-    double *u = exact_column(b, PROP_U, 0);
-
-    for (uint64_t i = b->first; i < b->first + b->count; i++) {
-        const double distance = x[i] - f->x0;
-        const struct side s = b->time > 0    ? sample(f, distance / b->time)
-                              : distance < 0 ? f->l
-                                             : f->r;
-        if (rho)
-            rho[i] = s.rho;
-        if (p)
-            p[i] = s.p;
-        if (u)
-            u[i] = s.rho > 0 ? s.p / ((f->gamma - 1) * s.rho) : 0;
-        for (uint32_t c = 0; c < b->dim && b->dst[PROP_V].data; c++)
-            exact_column(b, PROP_V, c)[i] = c == 0 ? s.u : 0;
-    }
-    return SPH_OK;
+    return exact_each(b, &item, at, &m);
 }
 
 static const sph_life life = {

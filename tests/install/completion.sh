@@ -60,7 +60,7 @@ is --version --vers
 is '' plan --dr
 is '--exists=' info --exi
 is --json info --js
-for command in run info plan check render new-plugin; do
+for command in run info plan check render chart new-plugin; do
     for option in $(sph $command --help | grep -oE '^ .{1,5}--[a-z-]+' | grep -oE -- '--.*'); do
         case " $(ask $command -) " in
         *" $option "* | *" $option= "*) ;;

@@ -4,9 +4,10 @@
 #include "plugins.h"
 
 #include <errno.h>
+#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
-#include <stdio.h>
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -29,6 +30,37 @@ const struct entry *plugins_find(const struct registry *r, enum kind kind, const
     return x;
 }
 
+/* The word of a choice, of n bytes at *word, by its index. */
+static size_t word_of(const char *choices, int index, const char **word)
+{
+    *word = choices;
+    for (; index > 0 && strchr(*word, '|'); index--)
+        *word = strchr(*word, '|') + 1;
+    return strcspn(*word, "|");
+}
+
+void plugins_set(struct sph_config *c, const sph_item *item, const char *const *names,
+                 const double *values)
+{
+    struct error e = {0};
+
+    for (int i = 0; names && names[i]; i++) {
+        const sph_param *p = item->params.data;
+        char text[64];
+        const char *word = NULL;
+        while (strcmp(p->name, names[i]) != 0) {
+            p++;
+            assert_true(p - (const sph_param *)item->params.data < item->params.count);
+        }
+        if (p->choices) {
+            const size_t n = word_of(p->choices, (int)values[i], &word);
+            snprintf(text, sizeof(text), "%.*s", (int)n, word);
+        }
+        if (config_set(c, names[i], values[i], word ? text : NULL, &e))
+            fail_msg("%s", e.text);
+    }
+}
+
 void trial_init(struct trial *u, struct registry *r, const sph_item *item, const sph_life *life,
                 const sph_list *props, int dim, const char *const *names, const double *values)
 {
@@ -39,9 +71,7 @@ void trial_init(struct trial *u, struct registry *r, const sph_item *item, const
     u->item = item;
     u->life = life;
     assert_int_equal(config_init(&u->config, item, &e), 0);
-    for (int i = 0; names && names[i]; i++)
-        if (config_set(&u->config, names[i], values[i], NULL, &e))
-            fail_msg("%s", e.text);
+    plugins_set(&u->config, item, names, values);
     assert_int_equal(config_check(&u->config, &e), 0);
     if (life && life->create)
         assert_int_equal(life->create(&r->host, &u->config, (uint32_t)dim, &u->state), SPH_OK);
@@ -80,7 +110,7 @@ sph_status use_run(struct trial *u, sph_range_fn run, double time, uint64_t n)
     return run(&u->batch);
 }
 
-static FILE *open_table(const char *file)
+FILE *plugins_open_table(const char *file)
 {
     const char *source = getenv("top_srcdir");
     char path[4096];
@@ -95,7 +125,7 @@ static FILE *open_table(const char *file)
 
 double *plugins_table(const char *file, int *columns, int *rows)
 {
-    FILE *f = open_table(file);
+    FILE *f = plugins_open_table(file);
     double *value = NULL;
     int n = 0;
     char line[4096];
@@ -107,17 +137,13 @@ double *plugins_table(const char *file, int *columns, int *rows)
         int here = 0;
         if (i < 2) /* where it is from; names of the columns */
             continue;
-        for (char *end = s;; s = end + 1, here++) {
+        for (char *end = s; *s && *s != '\n'; s = end + (*end == ','), here++) {
             const double x = strtod(s, &end);
-            if (end == s)
-                break;
+            const bool number = end > s && strchr(",\n", *end);
+            end += strcspn(end, ",\n");
             value = realloc(value, (size_t)(n + 1) * sizeof(*value));
             assert_non_null(value);
-            value[n++] = x;
-            if (*end != ',') {
-                here++;
-                break;
-            }
+            value[n++] = number ? x : NAN;
         }
         assert_true(*columns == 0 || here == *columns);
         *columns = here;

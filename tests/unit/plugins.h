@@ -5,6 +5,8 @@
 
 #include "registry/loader.h"
 
+#include <stdio.h>
+
 #define PLUGINS_COLUMNS 16
 #define PLUGINS_PARAMS 16
 
@@ -23,7 +25,9 @@ struct trial {
 void plugins_load(struct registry *r, const char *name);
 const struct entry *plugins_find(const struct registry *r, enum kind kind, const char *name);
 
-/* `values`: pairs of a parameter's name and its value, ended by NULL. */
+/* Parameters: names, ended by NULL, and their values; of a choice, its index. */
+void plugins_set(struct sph_config *c, const sph_item *item, const char *const *names,
+                 const double *values);
 void trial_init(struct trial *u, struct registry *r, const sph_item *item, const sph_life *life,
                 const sph_list *props, int dim, const char *const *names, const double *values);
 void trial_fini(struct trial *u);
@@ -31,7 +35,10 @@ void trial_fini(struct trial *u);
 void use_column(struct trial *u, uint32_t k, double *data, uint64_t n);
 sph_status use_run(struct trial *u, sph_range_fn run, double time, uint64_t n);
 
-/* A table of tests/reference. Numbers only, row by row; *columns a row. The caller frees it. */
+/* A table of tests/reference, row by row; *columns a row. What is no number is NaN. The caller frees
+ * it. */
 double *plugins_table(const char *file, int *columns, int *rows);
+/* Its text: a line that says where it is from, one of names, then the rows. */
+FILE *plugins_open_table(const char *file);
 
 #endif

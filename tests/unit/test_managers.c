@@ -196,12 +196,83 @@ static void counts_true_pairs(void **state)
     }
 }
 
+/* -- Too many neighbours ------------------------------------------------------------------------ */
+
+static uint64_t neighbours_of(const struct cloud *c, size_t i, bool symmetric)
+{
+    uint64_t n = 0;
+
+    for (size_t j = 0; j < c->n; j++) {
+        double reach = c->scale * (symmetric ? fmax(c->h[i], c->h[j]) : c->h[i]), r2 = 0;
+
+        for (int a = 0; a < c->dim; a++) {
+            r2 += (c->x[a][i] - c->x[a][j]) * (c->x[a][i] - c->x[a][j]);
+        }
+        n += j != i && r2 < reach * reach;
+    }
+    return n;
+}
+
+/* Of points of which some see too many: all are counted, and the first is the same for any number of
+ * threads. Then the list that is to end there fails, and its memory is good for another. */
+static void check_crowd(struct owned *o, uint64_t most, bool symmetric)
+{
+    uint64_t n = 0, of_first = 0;
+    size_t first = SIZE_MAX;
+
+    for (size_t i = 0; i < o->c.n; i++) {
+        uint64_t k = neighbours_of(&o->c, i, symmetric);
+
+        n += k > most;
+        if (k > most && first == SIZE_MAX) {
+            first = i;
+            of_first = k;
+        }
+    }
+    for (int threads = 1; threads <= 4; threads += 3) {
+        struct group_list l = {.crowd = {.most = most}};
+        struct error e;
+
+        assert_int_equal(group_list_make(&l, &o->c, &o->c, symmetric, 0.1, NULL, threads, &e), 0);
+        assert_int_equal(l.crowd.n, n);
+        for (int stops = 0; stops < 2 && n > 0; stops++) {
+            assert_int_equal(l.crowd.first, first);
+            assert_int_equal(l.crowd.neighbours, of_first);
+            l.crowd.stops = true;
+            assert_int_equal(group_list_make(&l, &o->c, &o->c, symmetric, 0.1, NULL, threads, &e),
+                             -1);
+            assert_int_equal(l.n_entry, 0);
+        }
+        l.crowd.most = o->c.n;
+        assert_int_equal(group_list_make(&l, &o->c, &o->c, symmetric, 0.1, NULL, threads, &e), 0);
+        assert_int_equal(l.crowd.n, 0);
+        group_list_fini(&l);
+    }
+}
+
+static void crowds(void **state)
+{
+    (void)state;
+    for (int dim = 1; dim <= 3; dim++) {
+        struct owned o = cloud_even(dim, 9000, 7);
+
+        check_crowd(&o, 60, false);
+        for (size_t i = 5003; i < 9000; i += 1500) {
+            o.h[i] *= 6;
+        }
+        check_crowd(&o, 60, false);
+        check_crowd(&o, 60, true);
+        check_crowd(&o, 9000, true);
+        cloud_free(&o);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(are_found_by_name), cmocka_unit_test(wide_ranges_cost_little),
         cmocka_unit_test(memory_is_bounded), cmocka_unit_test(threads_make_no_difference),
-        cmocka_unit_test(counts_true_pairs),
+        cmocka_unit_test(counts_true_pairs), cmocka_unit_test(crowds),
     };
 
     return cmocka_run_group_tests(tests, NULL, NULL);

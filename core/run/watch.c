@@ -1,0 +1,593 @@
+/* run/watch.c -- see watch.h. Columns are looked at in one go through memory, in blocks that threads share;
+ * only when something is wrong is the particle looked for. Knows the contract's names of columns, and no
+ * more of what they stand for. */
+#include "run/watch.h"
+#include "base/clones.h"
+#include "run/region.h"
+#include <float.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define PIECE 512
+#define PARALLEL_FROM 20000
+/* No step is called long that takes more than this of the run: what bounds it is just not there yet. */
+#define LONGEST_SHARE 0.01
+/* A clock that advances by less than this of its reading stands still. */
+#define STANDSTILL 1e-15
+#define NEARLY_STILL 1e-12
+
+/* What is wrong with which columns: a density of 0 is, an internal energy is not. */
+static const struct {
+    const char *name;
+    enum watch_cause cause;
+    double least;
+} contract[] = {
+    {"rho", WATCH_DENSITY, DBL_TRUE_MIN},
+    {"u", WATCH_INTERNAL_ENERGY, 0.0},
+};
+
+/* -- Looking ------------------------------------------------------------------------------------ */
+
+/* Of n numbers those below `least` or above `most`; with `none` also those that are no number. */
+CLONES static long count_outside(const double *x, size_t n, double least, double most, int none)
+{
+    long bad = 0;
+#pragma omp simd reduction(+ : bad)
+    for (size_t i = 0; i < n; i++)
+        bad += (x[i] < least) | (x[i] > most) | (none & (x[i] != x[i]));
+    return bad;
+}
+
+static long count_column(const struct run *r, const struct column *c, uint32_t k, size_t n,
+                         double least, double most, bool none)
+{
+    long bad = 0;
+#pragma omp parallel for schedule(static) num_threads(r->threads) reduction(+ : bad) if (n > PARALLEL_FROM)
+    for (size_t first = 0; first < n; first += PIECE) {
+        const size_t some = n - first < PIECE ? n - first : PIECE;
+        double room[PIECE];
+        const double *x = room;
+        if (c->size == sizeof(double))
+            x = (const double *)c->data + k * c->plane + first;
+        else
+            column_load(c, k, first, some, room);
+        bad += count_outside(x, some, least, most, none);
+    }
+    return bad;
+}
+
+/* -- Beginning ---------------------------------------------------------------------------------- */
+
+static bool has_rate(const struct plan_array *a, int column)
+{
+    for (size_t q = 0; q < a->n_rate; q++)
+        if (a->rate[q].property == column)
+            return true;
+    return false;
+}
+
+static void add_columns(struct run *r, size_t array)
+{
+    const struct plan_array *a = &r->plan->array[array];
+    for (size_t k = 0; k < sizeof contract / sizeof contract[0]; k++) {
+        const int at = particles_find(&a->p, contract[k].name);
+        if (at < 0 || !column_is_real(&a->p.column[at]) || a->p.column[at].ncomp != 1 ||
+            r->watch->scene[contract[k].cause].action == WATCH_OFF ||
+            !plan_changes(r->plan, array, at))
+            continue;
+        r->watch->column[r->watch->n_column++] = (struct watched){.array = array,
+                                                                  .column = at,
+                                                                  .cause = contract[k].cause,
+                                                                  .least = contract[k].least,
+                                                                  .integrated = has_rate(a, at)};
+    }
+}
+
+int watch_open(struct run *r, struct error *e)
+{
+    const size_t n = r->plan->n_array;
+    struct watch *w = r->watch = calloc(1, sizeof *w);
+    if (!w)
+        return error_memory(e, "the watch", sizeof *w);
+    w->scene = r->plan->scene->watch;
+    w->column = calloc(n * (sizeof contract / sizeof contract[0]) + 1, sizeof *w->column);
+    w->here = calloc(n * WATCH_CAUSES + 1, sizeof *w->here);
+    if (!w->column || !w->here)
+        return error_memory(e, "the watch", n * sizeof *w->column);
+    for (size_t a = 0; a < n; a++)
+        add_columns(r, a);
+    return 0;
+}
+
+void watch_close(struct run *r)
+{
+    if (r->watch) {
+        free(r->watch->column);
+        free(r->watch->here);
+    }
+    free(r->watch);
+    r->watch = NULL;
+}
+
+/* The least and the largest of all particles' component k of x. */
+static void extent(const struct run *r, uint32_t k, double *low, double *high)
+{
+    *low = INFINITY;
+    *high = -INFINITY;
+    for (size_t a = 0; a < r->plan->n_array; a++) {
+        const struct plan_array *pa = &r->plan->array[a];
+        for (size_t i = 0; i < pa->p.n; i++) {
+            const double x = column_get(&pa->p.column[pa->position], k, i);
+            *low = x < *low ? x : *low;
+            *high = x > *high ? x : *high;
+        }
+    }
+}
+
+/* Beyond an open side so many sizes of the domain, or of all that is there at the start. A mirror throws
+ * back what crosses it, but nothing sane crosses it by a whole domain in a step. */
+static void set_bounds(struct run *r)
+{
+    const struct box *box = &r->plan->scene->box;
+    struct watch *w = r->watch;
+    double low[3], high[3], size = 0.0;
+    for (int c = 0; c < r->plan->dim; c++) {
+        low[c] = box->min[c];
+        high[c] = box->max[c];
+        if (!box->bounded)
+            extent(r, (uint32_t)c, &low[c], &high[c]);
+        size = fmax(size, high[c] - low[c]);
+    }
+    for (int c = 0; c < r->plan->dim; c++)
+        for (int side = 0; side < 2; side++) {
+            const enum side is = box->bounded ? box->side[c][side] : SIDE_OPEN;
+            const double far = is == SIDE_MIRROR ? high[c] - low[c]
+                               : is == SIDE_OPEN && size > 0.0
+                                   ? w->scene[WATCH_ESCAPED].limit * size
+                                   : INFINITY;
+            const double at = side ? high[c] + far : low[c] - far;
+            *(side ? &w->high[c] : &w->low[c]) = fmin(fmax(at, -DBL_MAX), DBL_MAX);
+        }
+}
+
+/* -- What was found ----------------------------------------------------------------------------- */
+
+/* True: it is counted, and the run goes on. */
+static bool counted(struct run *r, const struct sign *s, uint64_t n)
+{
+    struct watch *w = r->watch;
+    if (w->scene[s->cause].action != WATCH_COUNT)
+        return false;
+    const size_t array = s->array ? (size_t)(s->array - r->plan->array) : 0;
+    uint64_t *here = &w->here[(size_t)s->cause * r->plan->n_array + array];
+    *here = n > *here ? n : *here;
+    if (!w->count[s->cause].first.happened)
+        w->count[s->cause].first = watch_record(r, s);
+    return true;
+}
+
+void watch_step(struct run *r)
+{
+    const size_t n = r->plan->n_array;
+    for (size_t c = 0; c < WATCH_CAUSES; c++)
+        for (size_t a = 0; a < n; a++) {
+            r->watch->count[c].n += r->watch->here[c * n + a];
+            r->watch->here[c * n + a] = 0;
+        }
+}
+
+static long long id_of(const struct plan_array *a, size_t i)
+{
+    return (long long)((const int64_t *)a->p.column[a->id].data)[i];
+}
+
+/* Who made it, in a sentence. */
+static const char *made_by(char *text, size_t size, const char *by)
+{
+    if (strcmp(by, WATCH_SCENE) == 0)
+        snprintf(text, size, "in the initial state");
+    else if (strcmp(by, WATCH_INTEGRATOR) == 0)
+        snprintf(text, size, "by the integrator");
+    else
+        snprintf(text, size, "by pass %s", by);
+    return text;
+}
+
+/* The same of a column; what the integrator made it of is told as well. */
+static const char *column_made_by(char *text, size_t size, const struct run *r, size_t array,
+                                  int column, const char *by)
+{
+    const struct plan_array *a = &r->plan->array[array];
+    made_by(text, size, by);
+    const size_t used = strlen(text);
+    for (size_t q = 0; strcmp(by, WATCH_INTEGRATOR) == 0 && q < a->n_rate; q++)
+        if (a->rate[q].property == column)
+            snprintf(text + used, size - used, " with \"%s\" of %s",
+                     a->p.column[a->rate[q].rate].name, finite_writer(r, array, a->rate[q].rate));
+    return text;
+}
+
+static int look_at(struct run *r, const struct watched *k, double least, const char *by,
+                   struct error *e)
+{
+    const struct plan_array *a = &r->plan->array[k->array];
+    const struct column *c = &a->p.column[k->column];
+    const long bad = count_column(r, c, 0, a->p.n, least, INFINITY, false);
+    if (!bad)
+        return 0;
+    struct sign s = {k->cause, a, 0, (size_t)bad - 1, by, c->name};
+    double worst = INFINITY;
+    for (size_t i = 0; i < a->p.n; i++)
+        if (column_get(c, 0, i) < worst) {
+            worst = column_get(c, 0, i);
+            s.particle = i;
+        }
+    char who[320];
+    column_made_by(who, sizeof who, r, k->array, k->column, by);
+    return counted(r, &s, (uint64_t)bad)
+               ? 0
+               : watch_fail(r, &s, e, "%s of particle %lld of \"%s\" became %g %s,", c->name,
+                            id_of(a, s.particle), a->p.name, worst, who);
+}
+
+/* -- Before an evaluation ----------------------------------------------------------------------- */
+
+static bool is_outside(const struct run *r, const struct plan_array *a, size_t i)
+{
+    bool out = false;
+    for (int c = 0; c < r->plan->dim; c++) {
+        const double x = column_get(&a->p.column[a->position], (uint32_t)c, i);
+        out = out || !(x >= r->watch->low[c] && x <= r->watch->high[c]);
+    }
+    return out;
+}
+
+static int nowhere(struct run *r, const struct plan_array *a, size_t i, struct error *e)
+{
+    const struct sign s = {WATCH_NOT_FINITE, a, i, 0, WATCH_INTEGRATOR, NULL};
+    return watch_fail(r, &s, e,
+                      "the integrator made \"%s\" infinite or not a number for particle %lld of "
+                      "array \"%s\"",
+                      a->p.column[a->position].name, id_of(a, i), a->p.name);
+}
+
+/* Those that left: all are gone through, since some component of some is outside. */
+static int left(struct run *r, const struct plan_array *a, const bool *inside, struct error *e)
+{
+    struct sign s = {
+        WATCH_ESCAPED, a, SIZE_MAX, 0, r->watch->begun ? WATCH_INTEGRATOR : WATCH_SCENE, NULL};
+    uint64_t n = 0;
+    for (size_t i = 0; i < a->p.n; i++) {
+        for (int c = 0; c < r->plan->dim; c++)
+            if (!isfinite(column_get(&a->p.column[a->position], (uint32_t)c, i)))
+                return nowhere(r, a, i, e);
+        if (inside ? inside[i] : !is_outside(r, a, i))
+            continue;
+        s.particle = n++ ? s.particle : i;
+    }
+    s.others = n ? n - 1 : 0;
+    if (!n || r->watch->scene[WATCH_ESCAPED].action == WATCH_OFF || counted(r, &s, n))
+        return 0;
+    char who[160];
+    return watch_fail(r, &s, e, "particle %lld of \"%s\" was moved %s out of %s, to a place",
+                      id_of(a, s.particle), a->p.name, made_by(who, sizeof who, s.by),
+                      inside                        ? "the region of watch.escaped.where"
+                      : r->plan->scene->box.bounded ? "the domain"
+                                                    : "all reach");
+}
+
+static int look_where(struct run *r, const struct plan_array *a, struct error *e)
+{
+    const char *where = r->watch->scene[WATCH_ESCAPED].where;
+    if (!where || r->watch->scene[WATCH_ESCAPED].action == WATCH_OFF)
+        return 0;
+    bool *inside = calloc(a->p.n + 1, sizeof *inside);
+    if (!inside)
+        return error_memory(e, "the watch", a->p.n);
+    int status = region_select(a, where, inside, e);
+    if (!status)
+        status = left(r, a, inside, e);
+    free(inside);
+    return status;
+}
+
+static int look_for_escaped(struct run *r, size_t array, struct error *e)
+{
+    const struct plan_array *a = &r->plan->array[array];
+    long bad = 0;
+    for (int c = 0; c < r->plan->dim; c++)
+        bad += count_column(r, &a->p.column[a->position], (uint32_t)c, a->p.n, r->watch->low[c],
+                            r->watch->high[c], true);
+    if (bad && left(r, a, NULL, e))
+        return -1;
+    return look_where(r, a, e);
+}
+
+/* Whether lists are made anew when this array moves. */
+static bool has_lists(const struct plan *plan, size_t array)
+{
+    for (size_t k = 0; k < plan->n_list; k++)
+        if (plan->list[k].frame == 0 && (plan->list[k].dst == array || plan->list[k].src == array))
+            return true;
+    return false;
+}
+
+int watch_places(struct run *r, bool all, struct error *e)
+{
+    const struct scene_watch *rule = &r->watch->scene[WATCH_ESCAPED];
+    const bool always = rule->where || rule->action == WATCH_COUNT;
+    if (!r->watch->bounded)
+        set_bounds(r);
+    r->watch->bounded = true;
+    for (size_t a = 0; a < r->plan->n_array; a++)
+        if ((always || all == has_lists(r->plan, a)) && look_for_escaped(r, a, e))
+            return -1;
+    return 0;
+}
+
+int watch_state(struct run *r, struct error *e)
+{
+    struct watch *w = r->watch;
+    const bool first = !w->begun;
+    for (size_t k = 0; k < w->n_column; k++) {
+        struct watched *c = &w->column[k];
+        const struct plan_array *a = &r->plan->array[c->array];
+        /* An internal energy may be counted from anywhere: whoever begins below 0 means it. */
+        if (first && c->cause == WATCH_INTERNAL_ENERGY)
+            c->may_be =
+                count_column(r, &a->p.column[c->column], 0, a->p.n, c->least, INFINITY, false) > 0;
+        if (c->integrated && !c->may_be &&
+            look_at(r, c, c->least, first ? WATCH_SCENE : WATCH_INTEGRATOR, e))
+            return -1;
+    }
+    const int status = watch_places(r, false, e);
+    w->begun = true;
+    return status;
+}
+
+/* -- After a pass ------------------------------------------------------------------------------- */
+
+/* A sum over other arrays alone is rightly 0 far from them. */
+static bool sums_over_others(const struct pass *p, size_t array)
+{
+    for (size_t s = 0; s < p->n_src; s++)
+        if (p->src[s].array == array)
+            return false;
+    return p->shape == SPH_PAIR;
+}
+
+int watch_pass(struct run *r, const struct pass *p, struct error *e)
+{
+    for (size_t k = 0; k < r->watch->n_column; k++) {
+        const struct watched *c = &r->watch->column[k];
+        const size_t array = p->dst.array;
+        if (c->array == array && !c->may_be && pass_writes(p, array, c->column) &&
+            finite_finished(r, p, array, c->column, false) &&
+            look_at(r, c, sums_over_others(p, array) ? 0.0 : c->least, p->name, e))
+            return -1;
+    }
+    return 0;
+}
+
+/* -- Neighbours --------------------------------------------------------------------------------- */
+
+/* Who made the smoothing length as it is: the last that writes it, if it has had its turn yet. */
+static const char *writer_of_h(const struct run *r, size_t array)
+{
+    const struct plan_array *a = &r->plan->array[array];
+    const bool later = r->watch->evaluated, begun = r->watch->begun;
+    const char *by = later && has_rate(a, a->smoothing) ? WATCH_INTEGRATOR : WATCH_SCENE;
+    for (size_t i = 0; i < r->plan->n_pass; i++)
+        if ((later || (begun && i <= r->watch->done)) &&
+            pass_writes(&r->plan->pass[i], array, a->smoothing))
+            by = r->plan->pass[i].name;
+    return by;
+}
+
+int watch_crowd(struct run *r, size_t k, struct error *e)
+{
+    const struct overflow *crowd = &r->list[k].crowd;
+    const size_t array = r->plan->list[k].dst;
+    const struct plan_array *a = &r->plan->array[array];
+    const struct sign s = {WATCH_NEIGHBOURS, a, crowd->first, 0, writer_of_h(r, array), NULL};
+    char who[160];
+    if (!crowd->n || counted(r, &s, crowd->n))
+        return 0;
+    return watch_fail(
+        r, &s, e,
+        "particle %lld of \"%s\" has %llu neighbours among \"%s\", more than %g, its h set %s,",
+        id_of(a, crowd->first), a->p.name, (unsigned long long)crowd->neighbours,
+        r->plan->array[r->plan->list[k].src].p.name, r->watch->scene[WATCH_NEIGHBOURS].limit,
+        made_by(who, sizeof who, s.by));
+}
+
+/* The particle with the largest smoothing length, or the first whose is no length. */
+static struct sign widest(const struct run *r)
+{
+    struct sign s = {.cause = WATCH_NEIGHBOURS};
+    double most = -1.0;
+    for (size_t k = 0; k < r->plan->n_array; k++) {
+        const struct plan_array *a = &r->plan->array[k];
+        for (size_t i = 0; i < a->p.n; i++) {
+            const double h = column_get(&a->p.column[a->smoothing], 0, i);
+            const bool none = !(h >= 0.0 && h <= DBL_MAX);
+            if (!none && !(h > most))
+                continue;
+            s.array = a;
+            s.particle = i;
+            s.by = writer_of_h(r, k);
+            s.cause = none ? WATCH_NOT_FINITE : WATCH_NEIGHBOURS;
+            if (none)
+                return s;
+            most = h;
+        }
+    }
+    return s;
+}
+
+static int tell_h(struct run *r, struct sign s, const char *what, struct error *e)
+{
+    char who[320];
+    const struct plan_array *a = s.array;
+    s.column = "h";
+    column_made_by(who, sizeof who, r, (size_t)(a - r->plan->array), a->smoothing, s.by);
+    return watch_fail(r, &s, e, "h of particle %lld of \"%s\" became %g %s%s,",
+                      id_of(a, s.particle), a->p.name,
+                      column_get(&a->p.column[a->smoothing], 0, s.particle), who, what);
+}
+
+int watch_no_lists(struct run *r, struct error *e)
+{
+    const struct sign s = widest(r);
+    return s.array && s.cause == WATCH_NOT_FINITE ? tell_h(r, s, "", e) : -1;
+}
+
+int watch_no_ghosts(struct run *r, struct error *e)
+{
+    const struct sign s = widest(r);
+    if (!s.array || !r->watch->evaluated)
+        return -1;
+    return tell_h(r, s, s.cause == WATCH_NEIGHBOURS ? ", as far as the domain is wide" : "", e);
+}
+
+/* Of one particle's neighbours those that are no ghosts. */
+static uint64_t real_neighbours(const struct run *r, const struct sign *s)
+{
+    const struct plan_array *a = s->array;
+    const double reach = column_get(&a->p.column[a->smoothing], 0, s->particle) *
+                         r->plan->kernel.support * r->plan->reach_scale;
+    uint64_t n = 0;
+    for (size_t k = 0; k < r->plan->n_array; k++) {
+        const struct plan_array *b = &r->plan->array[k];
+        if (!plan_pair(r->plan, (size_t)(a - r->plan->array), k))
+            continue;
+        for (size_t i = 0; i < b->p.n; i++) {
+            double r2 = 0.0;
+            for (uint32_t c = 0; c < b->p.column[b->position].ncomp; c++)
+                r2 += pow(column_get(&b->p.column[b->position], c, i) -
+                              column_get(&a->p.column[a->position], c, s->particle),
+                          2);
+            n += r2 < reach * reach && !(a == b && i == s->particle);
+        }
+    }
+    return n;
+}
+
+int watch_reach(struct run *r, double margin, struct error *e)
+{
+    const struct scene_watch *rule = &r->watch->scene[WATCH_NEIGHBOURS];
+    const struct box *box = &r->plan->scene->box;
+    bool wide = false;
+    for (int c = 0; c < r->plan->dim; c++)
+        wide = wide || (box->bounded && box->side[c][0] != SIDE_OPEN &&
+                        box->side[c][1] != SIDE_OPEN && 2.0 * margin > box->max[c] - box->min[c]);
+    if (!wide || rule->action != WATCH_STOP)
+        return 0;
+    const struct sign s = widest(r);
+    const uint64_t n = s.array && s.cause == WATCH_NEIGHBOURS ? real_neighbours(r, &s) : 0;
+    if (!((double)n > rule->limit))
+        return 0;
+    char what[96];
+    snprintf(what, sizeof what, ", which makes %llu neighbours and more, over %g,",
+             (unsigned long long)n, rule->limit);
+    return tell_h(r, s, what, e);
+}
+
+/* -- Steps and totals --------------------------------------------------------------------------- */
+
+/* Who bounds the step: NULL if no reduction does. */
+static const struct reduction *bound_of(const struct run *r, double dt)
+{
+    for (size_t i = 0; i < r->plan->n_reduction; i++) {
+        const struct reduction *d = &r->plan->reduction[i];
+        if (d->declared->use == SPH_USE_TIME_STEP && r->reduced[i] <= r->dt_bound &&
+            r->plan->cfl * r->dt_bound <= dt * (1.0 + 1e-9))
+            return d;
+    }
+    return NULL;
+}
+
+static struct sign who_bounds(const struct run *r, double dt)
+{
+    struct sign s = {.cause = WATCH_TIME_STEP};
+    const struct reduction *d = bound_of(r, dt);
+    if (!d)
+        return s;
+    s.by = r->plan->pass[d->pass].name;
+    const struct plan_array *a = &r->plan->array[d->array];
+    double least = INFINITY;
+    for (size_t i = 0; i < a->p.n; i++)
+        if (column_get(&a->p.column[d->column], 0, i) < least) {
+            least = column_get(&a->p.column[d->column], 0, i);
+            s.array = a;
+            s.particle = i;
+        }
+    return s;
+}
+
+int watch_time_step(struct run *r, double dt, double span, struct error *e)
+{
+    struct watch *w = r->watch;
+    const struct scene_watch *rule = &w->scene[WATCH_TIME_STEP];
+    const double clock = fmax(fabs(r->time), span),
+                 longest = fmin(w->longest, LONGEST_SHARE * span);
+    const bool stands = !(dt > STANDSTILL * clock);
+    const bool collapsed = !(dt > NEARLY_STILL * clock) || dt < rule->limit * longest;
+    w->longest = dt < INFINITY ? fmax(w->longest, dt) : w->longest;
+    if (!stands && (!collapsed || rule->action == WATCH_OFF))
+        return 0;
+    const struct sign s = who_bounds(r, dt);
+    if (!stands && counted(r, &s, 1))
+        return 0;
+    const struct reduction *d = bound_of(r, dt);
+    char of[320] = "";
+    if (s.array)
+        snprintf(of, sizeof of, ", bounded by \"%s\" of pass %s for particle %lld of \"%s\"",
+                 d->declared->name, s.by, id_of(s.array, s.particle), s.array->p.name);
+    return watch_fail(r, &s, e,
+                      "the time step collapsed to %g, %.3g times the longest of the run%s", dt,
+                      w->longest > 0.0 ? dt / w->longest : 0.0, of);
+}
+
+/* The particle with the most kinetic energy. */
+static struct sign who_moves(const struct run *r)
+{
+    struct sign s = {.cause = WATCH_ENERGY};
+    double most = -1.0;
+    for (size_t k = 0; k < r->plan->n_array; k++) {
+        const struct plan_array *a = &r->plan->array[k];
+        for (size_t i = 0; a->velocity >= 0 && i < a->p.n; i++) {
+            double v2 = 0.0;
+            for (uint32_t c = 0; c < a->p.column[a->velocity].ncomp; c++)
+                v2 += pow(column_get(&a->p.column[a->velocity], c, i), 2);
+            if (column_get(&a->p.column[a->mass], 0, i) * v2 > most) {
+                most = column_get(&a->p.column[a->mass], 0, i) * v2;
+                s.array = a;
+                s.particle = i;
+            }
+        }
+    }
+    return s;
+}
+
+int watch_energy(struct run *r, const struct totals *first, const struct totals *now,
+                 struct error *e)
+{
+    const struct scene_watch *rule = &r->watch->scene[WATCH_ENERGY];
+    const double begin = first->kinetic + first->internal + first->potential;
+    const double grown = now->kinetic + now->internal + now->potential - begin;
+    const double parts = fabs(first->kinetic) + fabs(first->internal) + fabs(first->potential);
+    /* Of whoever tells the kinetic energy alone nothing is known: from rest it may grow to anything. */
+    const double scale = !isnan(rule->scale) ? rule->scale : now->has_energy ? parts : 0.0;
+    if (rule->action == WATCH_OFF || !(scale > 0.0) || !(fabs(grown) > rule->limit * scale))
+        return 0;
+    const struct sign s = who_moves(r);
+    if (counted(r, &s, 1))
+        return 0;
+    char who[160] = "";
+    if (s.array)
+        snprintf(who, sizeof who, ", the most kinetic energy has particle %lld of \"%s\",",
+                 id_of(s.array, s.particle), s.array->p.name);
+    return watch_fail(r, &s, e, "the total energy went from %g to %g, by %.3g times its scale %g%s",
+                      begin, begin + grown, fabs(grown) / scale, scale, who);
+}

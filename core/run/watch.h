@@ -1,0 +1,102 @@
+/* run/watch.h -- signs that a run has gone wrong ("watch" of the scene): looked for, and told with the
+ * particle and the pass that they come from, or counted. Reads columns and totals; what it finds is kept
+ * in the run's struct watch, for summary.json. */
+#ifndef RUN_WATCH_H
+#define RUN_WATCH_H
+
+#include "run/run.h"
+
+/* What stopped the run, for machines; the sentence is in the error. */
+struct failure {
+    bool happened;
+    enum watch_cause cause;
+    const struct plan_array *array; /* NULL: no particle is to blame */
+    int64_t particle;
+    double x[3];
+    char pass[128]; /* the pass that made it, or "integrator", "scene"; "": nobody in particular */
+    uint64_t step;
+    double time;
+};
+
+/* What was counted: particles a step, or events. */
+struct watch_count {
+    uint64_t n;
+    struct failure first; /* happened: there was one */
+};
+
+/* A column that is looked at: what a cause says of it. */
+struct watched {
+    size_t array;
+    int column;
+    enum watch_cause cause;
+    double least;    /* what is below is wrong */
+    bool integrated; /* it has a rate */
+    bool may_be;     /* it was wrong at the start already, so that it is meant */
+};
+
+struct watch {
+    const struct scene_watch *scene;
+    struct watched *column;
+    size_t n_column;
+    double low[3], high[3]; /* where a particle has escaped */
+    bool bounded;           /* bounds are set */
+    bool begun, evaluated;  /* it was looked at; an evaluation was finished */
+    bool sorted; /* particles were, in this evaluation: what is derived is not theirs ... */
+    size_t done; /* ... unless one of so many passes has made it anew */
+    double longest, energy; /* step so far; scale of the energy, 0: not known */
+    uint64_t *here; /* [cause * arrays + array]: most particles found at a time in this step */
+    struct watch_count count[WATCH_CAUSES];
+    struct failure failure;
+};
+
+int watch_open(struct run *r, struct error *e);
+void watch_close(struct run *r);
+/* watch_store.c: into a checkpoint or out of it; of a watch that is open. */
+int watch_store(struct run *r, struct store *s, struct error *e);
+
+/* Before an evaluation, while places are as the integrator left them. */
+int watch_state(struct run *r, struct error *e);
+/* Places: with `all` of arrays that stand in lists, before those are made anew, and particles wrapped; as long as
+ * they hold nobody has gone anywhere. Without, of other arrays. What is counted, and a region, is looked
+ * at each time. */
+int watch_places(struct run *r, bool all, struct error *e);
+/* What a pass has just written. */
+int watch_pass(struct run *r, const struct pass *p, struct error *e);
+/* After list k was made, or was not for its crowd. */
+int watch_crowd(struct run *r, size_t k, struct error *e);
+/* Lists, ghosts could not be made; if a smoothing length is to blame, that is said in place of what e
+ * says. Both return -1. */
+int watch_no_lists(struct run *r, struct error *e);
+int watch_no_ghosts(struct run *r, struct error *e);
+/* Before ghosts are made for a margin: where they would be many, that nobody has too many neighbours
+ * without them. */
+int watch_reach(struct run *r, double margin, struct error *e);
+/* The step that is to follow, before it is cut to end on time; span: of the whole run. */
+int watch_time_step(struct run *r, double dt, double span, struct error *e);
+/* Where totals are written. */
+int watch_energy(struct run *r, const struct totals *first, const struct totals *now,
+                 struct error *e);
+/* At the end of a step: what was found in it counts. */
+void watch_step(struct run *r);
+
+/* A sign that was found, to be told. */
+struct sign {
+    enum watch_cause cause;
+    const struct plan_array *array; /* NULL: there is no particle to name */
+    size_t particle;
+    size_t others;      /* of which the same may be said */
+    const char *by;     /* as failure.pass */
+    const char *column; /* named in the sentence already, or NULL */
+};
+
+/* watch_tell.c. Keeps the failure and says "WHAT at x = (..), step .., t = ..; rho = .., ...; likely ..."
+ * (EXIT_RUN). Returns -1. */
+int watch_fail(const struct run *r, const struct sign *s, struct error *e, const char *what, ...)
+    __attribute__((format(printf, 4, 5)));
+/* What a failure says of itself but for the sentence. */
+struct failure watch_record(const struct run *r, const struct sign *s);
+/* "pass density(fluid)", "the integrator": the text of failure.pass in a sentence. */
+#define WATCH_INTEGRATOR "integrator"
+#define WATCH_SCENE "scene"
+
+#endif

@@ -12,7 +12,7 @@ scenes = Scenes()
 expect = scenes.expect
 noh, sod, wall = example("noh.json"), example("sod.json"), example("noh-1d.json")
 for scene in (noh, sod, wall):
-    for key in ("compare", "probes", "output"):
+    for key in ("compare", "probes", "profiles", "output"):
         scene.pop(key, None)
 noh["particles"]["fluid"]["fill"]["spacing"] = 0.1
 noh["time"]["end"] = 5

@@ -18,6 +18,8 @@ noh, sod = example("noh.json"), example("sod.json")
 noh["particles"]["fluid"]["fill"]["spacing"] = 0.1
 for scene in (noh, sod):
     scene["output"].pop("picture", None)
+    scene.pop("profiles", None)
+sod.pop("probes")
 
 # -- A run to the end -----------------------------------------------------------------------------
 

@@ -59,6 +59,9 @@ def compare(what, whole, other):
     a, b = rows(whole.out), rows(other.out)
     first = next((k for k, (x, y) in enumerate(zip(a, b)) if x != y), min(len(a), len(b)))
     expect(f"{what}: the log", a == b, f"from row {first} on, {len(a)} and {len(b)} rows")
+    for name in (os.path.basename(path) for path in glob.glob(whole.path("*.csv")) if not path.endswith("log.csv")):
+        with open(whole.path(name)) as one, open(other.path(name)) as two:
+            expect(f"{what}: {name}", one.read() == two.read())
     if other.has("summary.json"):
         a, b = numbers(whole), numbers(other)
         expect(f"{what}: the summary", a == b, [(key, a[key], b.get(key)) for key in a if a[key] != b.get(key)])
@@ -121,6 +124,10 @@ def small(name, spacing=None, **top):
 
 noh = small("noh.json", 0.1)
 noh["compare"], noh["probes"] = example("noh.json")["compare"], example("noh.json")["probes"]
+noh["compare"] = [{**noh["compare"][0], "every": 0.04}]
+noh["probes"] += [{"name": "along", "array": "fluid", "at": [[0, 0], [0.5, 0.1]], "of": "rho", "steps": 3},
+                  {"name": "most", "array": "fluid", "max": "rho", "every": 0.03}]
+noh["profiles"] = [{"name": "shells", "array": "fluid", "of": "rho", "along": "r", "bins": 5, "max": 1, "every": 0.05}]
 noh["neighbours"] = {"skin": 0.25}
 first = tried("noh", noh, 90, 13)
 

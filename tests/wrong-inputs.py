@@ -167,6 +167,86 @@ change('"exact": "riemann"', '"exact": "rieman"', '"rieman"', '(did you mean "ri
 change('"where": "r > 0.1"', '"where": @"r >"', '/compare/0/where: "r >": the expression ends too early')
 change('"array": "fluid", "mean"', '"array": @"fluit", "mean"', 'unknown array "fluit" (did you mean "fluid"?)')
 change('"mean": "rho"', '"mean": "roh"', "/probes/0", '"roh"', '(did you mean "rho"?)')
+# Of what is measured.
+COMPARE, PROBE = '{"array": "fluid", "exact": "riemann", "where": "r > 0.1"}', '{"name": "a", "array": "fluid", "mean": "rho"}'
+for new, parts in (
+        ('{"array": "fluid", "table": @{"x": [0, 1], "y": [1, 2]}}', ("/compare/0/table: no column of the table is",)),
+        ('{"array": "fluid", "table": @{"x": [0, 0.5, 0.5], "rho": [1, 1, 1]}}',
+         ("/compare/0/table: column \"x\" of the table does not rise: 0.5, 0.5 in rows 2, 3",)),
+        ('{"array": "fluid", "table": {"x": [0, 1], "rho": @[1]}}', ("/compare/0/table/rho: ", "as long as the others")),
+        ('{"array": "fluid", "table": @"none.csv"}', ("/compare/0/table: ", "none.csv: cannot be read")),
+        ('{"array": "fluid", "table": @3}', ("/compare/0/table: ", "name of a file or an object of columns")),
+        ('{"array": "fluid", "table": {"x": [0, 1], "d": [1, 1]}, "fields": {"rho": @"dd"}}',
+         ("/compare/0/fields/rho: the table has no column \"dd\" (did you mean \"d\"?)",)),
+        ('{"array": "fluid", "table": {"x": [0, 1], "rho": [1, 1]}, "fields": {"v.y": @"rho"}}',
+         ("/compare/0/fields/v.y: ", "components of \"v\" are x, r")),
+        ('{"array": "fluid", "table": {"x": [0, 1], "d": [1, 1]}, "fields": [@"rho"]}',
+         ("/compare/0/fields/0: the table has no column \"rho\"",)),
+        ('{"array": "fluid", "table": {"x": [0, 1], "rho": [1, 1]}, "along": @"y"}',
+         ("/compare/0/along: there is no y in 1 dimension",)),
+        ('{"array": "fluid", "table": {"x": [0, 1], "rho": [1, 1]}, "along": @"s"}', ("/compare/0/along: ",)),
+        ('{"array": "fluid", "table": {"x": [0, 1], "rho": [1, 1]}, "axis": @"x"}', ("/compare/0/axis: an axis is for 3",)),
+        ('{"array": "fluid", "table": {"x": [0, 1], "rho": [1, 1]}, @"gamma": 2}', ('/compare/0/gamma: unknown key',)),
+        ('{"array": "fluid", "table": {"x": [0, 1], "rho": [1, 1]}, "time": @1}',
+         ("/compare/0/time: the run goes from 0 to 0.01; 1 is outside",)),
+        ('{"array": "fluid", "table": {"x": [0, 1], "rho": [1, 1]}, "every": 1, "time": @0}',
+         ("/compare/0/time: a table for one time is compared then",)),
+        ('@{"array": "fluid", "table": "a.csv", "exact": "riemann"}', ("/compare/0: give \"exact\" or \"table\"",)),
+        ('{"array": "fluid", "exact": "riemann", "every": @0}', ("/compare/0/every: 0 is not a time interval",)),
+        ('{"array": "fluid", "exact": "riemann", "at": [0.001, @0.001]}', ("/compare/0/at/1: times must rise",)),
+        ('{"array": "fluid", "exact": "riemann", "at": @"now"}', ('/compare/0/at: "now" is not a time',)),
+        ('{"array": "fluid", "exact": "riemann", "fields": [@"h"]}',
+         ("/compare/0/fields/0: the exact solution \"riemann\" does not give \"h\"",)),
+        ('{"array": "fluid", "exact": "riemann", "fields": @"v.r"}', ("/compare/0/fields: the exact solution",))):
+    change(COMPARE, new, *parts)
+AT = '"array": "fluid", "of": "rho", "at": [0.5]'
+for new, parts in (
+        ('{"name": "a", "array": "fluid", "of": "rho", "at": [@1.5]}'.replace("[@", "@["),
+         ("/probes/0/at: the point lies outside of the domain: x = 1.5 is not within 0 to 1",)),
+        ('{"name": "a", "array": "fluid", "of": "rho", "at": [[0.5], @[-1]]}', ("/probes/0/at/1: the point lies outside",)),
+        ('{"name": "a", "array": "fluid", "of": "rho", "at": [[0.5], @[0.5, 1]]}', ("/probes/0/at/1: a point is an array of 1 number",)),
+        ('{"name": "a", "array": "fluid", "of": "rho", "at": @0.5}', ("/probes/0/at: ", "array of numbers")),
+        ('@{"name": "a", "array": "fluid", "at": [0.5]}', ('/probes/0: the key "of" is missing',)),
+        ('{"name": "a", "array": "fluid", "at": [0.5], "of": ["rho", @"roh"]}', ("/probes/0/of/1: ", '(did you mean "rho"?)')),
+        ('{"name": "a", "array": "fluid", "at": [0.5], "of": @"v.phi"}', ("/probes/0/of: ", "components of \"v\" are x, r")),
+        ('{"name": "a", "array": "fluid", "at": [0.5], "of": @"rho.x"}', ("/probes/0/of: ", "components of \"rho\" are none")),
+        ('{"name": "a", "array": "fluid", "at": [0.5], "of": @["rho", "rho"]}', ('/probes/0/of: "rho" stands there twice',)),
+        ('{"name": "a", "array": ["fluid", @"wall"], "at": [0.5], "of": "rho"}', ("/probes/0/array/1: ", '"wall"')),
+        ('{"name": "a", %s, @"where": "x > 0"}' % AT, ("/probes/0/where: ", "leave out \"where\"")),
+        ('{"name": "a", "array": "fluid", "mean": "rho", @"of": "p"}', ("/probes/0/of: ", "is for a probe \"at\" points")),
+        ('@{"name": "a", %s, "mean": "rho"}' % AT, ("/probes/0: a probe has one of",)),
+        ('@{"name": "a", %s, "every": 1, "steps": 2}' % AT, ('/probes/0: give "steps" or "every", not both',)),
+        ('{"name": "a", %s, "steps": @0}' % AT, ("/probes/0/steps: ",)),
+        ('{"name": "a", %s}, {"name": @"a", %s}' % (AT, AT), ("/probes/1/name: an earlier probe has this name",)),
+        ('{"name": "a b", %s}, {"name": @"a/b", %s}' % (AT, AT), ("/probes/1/name: ", "their files' names would be one")),
+        ('{"name": @"%s", %s}' % ("a" * 201, AT), ("/probes/0/name: a name has at most",)),
+        ('{"name": "a", %s, "reference": @{"table": "p.csv"}}' % AT, ("/probes/0/reference: ", 'give "every" or "steps"')),
+        ('{"name": "a", %s, "steps": 1, "reference": @{}}' % AT, ('/probes/0/reference: the key "table" is missing',)),
+        ('{"name": "a", %s, "steps": 1, "reference": {"table": {"t": [0, 1], "v": [0, 1]}, "value": @"u"}}' % AT,
+         ('/probes/0/reference/value: the table has no column "u"',)),
+        ('{"name": "a", %s, "steps": 1, "reference": {"table": @{"t": [1, 0], "v": [0, 1]}}}' % AT,
+         ('/probes/0/reference/table: column "t" of the table does not rise',)),
+        ('{"name": "a", %s, "steps": 1, "reference": {"table": @{"t": [1, 0]}}}' % AT, ("the table has one column",)),
+        ('{"name": "a", %s, "steps": 1, "reference": {"table": {"t": [0, 1], "v": [0, 1]}, "of": @"p"}}' % AT,
+         ('/probes/0/reference/of: the probe does not measure "p"',)),
+        ('{"name": "a", "array": "fluid", "of": "p", "at": [[0.1], [0.2]], "steps": 1, "reference": @{"table": {"t": [0, 1], "v": [0, 1]}}}',
+         ("/probes/0/reference: a probe with a reference is at one point",))):
+    change(PROBE, new, *parts)
+for new, parts in (
+        ('@{"name": "a", "array": "fluid", "of": "rho"}', ('/profiles/0: a profile goes "from" a point "to" another',)),
+        ('@{"name": "a", "array": "fluid", "of": "rho", "from": [0]}', ('/profiles/0: the key "to" is missing',)),
+        ('{"name": "a", "array": "fluid", "of": "rho", "from": [0], "to": @[2]}', ("/profiles/0/to: the point lies outside",)),
+        ('{"name": "a", "array": "fluid", "of": "rho", "from": [0], "to": [1], "points": @1}', ("/profiles/0/points: ",)),
+        ('{"name": "a", "array": "fluid", "of": "rho", "from": [0], "to": [1], @"bins": 3}', ("/profiles/0/bins: unknown key",)),
+        ('{"name": "a", "array": "fluid", "of": "rho", "along": "x", @"plain": true}', ("/profiles/0/plain: unknown key",)),
+        ('@{"name": "a", "array": "fluid", "of": "rho", "along": "r"}', ('/profiles/0: the key "max" is missing',)),
+        ('@{"name": "a", "array": "fluid", "of": "rho", "along": "x", "min": 2}', ("/profiles/0: min 2 is not below max 1",)),
+        ('{"name": "a", "array": "fluid", "of": @"rhoo", "along": "x"}', ("/profiles/0/of: ", '(did you mean "rho"?)')),
+        ('{"name": "a", "array": "fluid", "of": "rho", "along": "x"}, {"name": @"a", "array": "fluid", "of": "rho", "along": "x"}',
+         ("/profiles/1/name: an earlier profile has this name",)),
+        ('@3', ("/profiles/0: ",))):
+    change('"output":', '"profiles": [%s], "output":' % new, *parts)
+change('"output":', '"profiles": @{}, "output":', "/profiles: give an array of profiles")
 # Of neighbours and precision.
 for word, hint in (("mixt", '(did you mean "mixed"?)'), ("Mixed", '(did you mean "mixed"?)'), ("Single", "single"),
                    ("quadruple-precise", "double, mixed, single"), ("", "the text is empty")):

@@ -56,8 +56,7 @@ static double wrap_mirror(const struct box *box, int axis, double x, bool *flipp
     return x;
 }
 
-/* Whether component k of a property changes sign at a mirror across `axis`. */
-static bool turns(uint32_t type, int dim, uint32_t k, int axis)
+bool sides_turn(uint32_t type, int dim, uint32_t k, int axis)
 {
     /* Of a symmetric tensor, in the order xx, xy, xz, yy, yz, zz as present. */
     static const int row[4][6] = {{0}, {0}, {0, 0, 1}, {0, 0, 0, 1, 1, 2}};
@@ -102,7 +101,7 @@ static void turn_state(struct particles *p, size_t i, int axis)
         const struct column *c = &p->column[k];
 
         for (uint32_t q = 0; c->state && !is_position(c) && q < c->ncomp; q++) {
-            if (turns(c->type, p->dim, q, axis)) {
+            if (sides_turn(c->type, p->dim, q, axis)) {
                 column_set(c, q, i, -column_get(c, q, i));
             }
         }
@@ -355,7 +354,7 @@ static void refresh_real(const struct ghosts *g, const struct box *box, struct p
     unsigned turning = 0; /* the image bits that change the sign */
 
     for (int a = 0; a < p->dim && !position; a++) {
-        if (!periodic(box, a) && turns(c->type, p->dim, k, a)) {
+        if (!periodic(box, a) && sides_turn(c->type, p->dim, k, a)) {
             turning |= 3u << 2 * a;
         }
     }

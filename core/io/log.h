@@ -2,7 +2,7 @@
 #ifndef IO_LOG_H
 #define IO_LOG_H
 
-#include "io/output.h"
+#include "io/csv.h"
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
@@ -24,11 +24,9 @@ struct log_row {
  * cannot be written whole (disk full) is an error and is taken back, so that the file ends with
  * a good one. */
 struct log {
-    FILE *file;
-    char *path;
+    struct csv csv;
     bool header_done;
     int dim;
-    long good; /* bytes known to be on disk, whole rows */
 };
 int log_open(struct log *l, const char *path, int dim, struct error *e);
 /* The same, but rows come behind those that are there. */
@@ -36,11 +34,6 @@ int log_append(struct log *l, const char *path, int dim, struct error *e);
 /* Columns: step, time, dt, kinetic, internal, potential, momentum_x ..., angular_z (2D) or
  * angular_x ... (3D), mass, the extras by name, wall_s. The extras are those of the first row. */
 int log_write(struct log *l, const struct log_row *row, struct error *e);
-/* What has been written is on disk. */
-int log_sync(struct log *l, struct error *e);
-/* Takes the rows from this step on out of a file of rows in the folder whose first cell is a step, and what a
- * killed run has left half written; nothing if there is no such file. */
-int log_cut(const struct output *o, const char *name, uint64_t step, struct error *e);
 /* Syncs and closes. Nothing on a log that was never opened and is zeros. */
 int log_close(struct log *l, struct error *e);
 

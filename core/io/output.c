@@ -5,6 +5,7 @@
 #include "io/output.h"
 
 #include "base/text.h"
+#include "io/csv.h"
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -212,6 +213,14 @@ static bool file_has_mark(int folder, const char *name, const char *mark, size_t
     return false;
 }
 
+/* Rows that a run writes: log.csv, and what the scene has measured. */
+static bool is_rows(const char *name)
+{
+    return strcmp(name, "log.csv") == 0 || strcmp(name, "errors.csv") == 0 ||
+           ((starts_with(name, "probe_") || starts_with(name, "profile_")) &&
+            ends_with(name, ".csv"));
+}
+
 enum owner { NOBODY, OURS, FOREIGN };
 
 /* Whose file this is: ours to remove, of no concern, or in the way of ours. */
@@ -224,10 +233,9 @@ static enum owner file_owner(int folder, const char *name)
     if (starts_with(name, ASIDE_PREFIX) || output_is_snapshot(name) ||
         output_checkpoint_step(name) >= 0)
         return regular ? OURS : FOREIGN;
-    if (strcmp(name, "log.csv") == 0) {
-        const char mark[] = OUTPUT_LOG_MARK;
-        const bool ours =
-            s.st_size == 0 || file_has_mark(folder, name, mark, sizeof mark - 1, false);
+    if (is_rows(name)) {
+        const char *mark = strcmp(name, "log.csv") == 0 ? OUTPUT_LOG_MARK : CSV_MARK;
+        const bool ours = s.st_size == 0 || file_has_mark(folder, name, mark, strlen(mark), false);
         return regular && ours ? OURS : FOREIGN;
     }
     if (strcmp(name, "summary.json") == 0)

@@ -103,23 +103,84 @@ static void put_errors(struct maker *m, cJSON *root, const struct summary *s)
     cJSON *errors = put_object(m, root, "errors");
     for (size_t i = 0; i < s->n_error; i++) {
         const struct summary_error *from = &s->error[i];
-        char *name = cJSON_HasObjectItem(errors, from->field)
-                         ? text_format("%s@%s", from->field, from->reference)
-                         : text_format("%s", from->field);
+        char *name = text_format("%s", from->field);
+        /* Compared again: "fluid.rho@REFERENCE"; and again: "fluid.rho@REFERENCE.2". */
+        for (int k = 1; name && cJSON_GetObjectItemCaseSensitive(errors, name); k++) {
+            free(name);
+            name = k == 1 ? text_format("%s@%s", from->field, from->reference)
+                          : text_format("%s@%s.%d", from->field, from->reference, k);
+        }
         cJSON *error = name ? put_object(m, errors, name) : NULL;
         put_number(m, error, "l1", from->l1);
         put_number(m, error, "l1_rel", from->l1_rel);
         put_number(m, error, "l2", from->l2);
+        put_number(m, error, "l2_rel", from->l2_rel);
         put_number(m, error, "linf", from->linf);
+        put_vector(m, error, "linf_at", from->linf_at, s->dim);
         put_count(m, error, "n", from->n);
+        put_count(m, error, "outside", from->outside);
+        if (!isnan(from->time))
+            put_number(m, error, "time", from->time);
         put_text(m, error, "reference", from->reference);
         free(name);
     }
+}
+
+static void put_course(struct maker *m, cJSON *probe, const struct summary_course *from)
+{
+    cJSON *course = put_object(m, probe, "reference");
+    put_text(m, course, "reference", from->reference);
+    put_number(m, course, "begin", from->begin);
+    put_number(m, course, "end", from->end);
+    put_number(m, course, "l1", from->l1);
+    put_number(m, course, "l1_rel", from->l1_rel);
+    put_number(m, course, "l2", from->l2);
+    put_number(m, course, "l2_rel", from->l2_rel);
+    put_number(m, course, "linf", from->linf);
+}
+
+/* A number each, or of several points a list each. */
+static void put_values(struct maker *m, cJSON *probe, const struct summary_probe *from)
+{
+    cJSON *values = put_object(m, probe, "values");
+    for (size_t k = 0; k < from->n_of; k++) {
+        if (from->n_point == 1) {
+            put_number(m, values, from->of[k], from->values[k]);
+            continue;
+        }
+        cJSON *list = put(m, values, from->of[k], cJSON_CreateArray());
+        for (size_t i = 0; i < from->n_point; i++)
+            put_number(m, list, NULL, from->values[i * from->n_of + k]);
+    }
+}
+
+static void put_probes(struct maker *m, cJSON *root, const struct summary *s)
+{
     cJSON *probes = put_object(m, root, "probes");
     for (size_t i = 0; i < s->n_probe; i++) {
         cJSON *probe = put_object(m, probes, s->probe[i].name);
         put_number(m, probe, "value", s->probe[i].value);
         put_number(m, probe, "expected", s->probe[i].expected);
+        if (s->probe[i].of)
+            put_values(m, probe, &s->probe[i]);
+        if (s->probe[i].file) {
+            put_text(m, probe, "file", s->probe[i].file);
+            put_count(m, probe, "rows", s->probe[i].rows);
+        }
+        if (s->probe[i].course.reference)
+            put_course(m, probe, &s->probe[i].course);
+    }
+}
+
+static void put_profiles(struct maker *m, cJSON *root, const struct summary *s)
+{
+    if (!s->n_profile)
+        return;
+    cJSON *profiles = put_object(m, root, "profiles");
+    for (size_t i = 0; i < s->n_profile; i++) {
+        cJSON *profile = put_object(m, profiles, s->profile[i].name);
+        put_text(m, profile, "file", s->profile[i].file);
+        put_count(m, profile, "rows", s->profile[i].rows);
     }
 }
 
@@ -277,6 +338,8 @@ cJSON *summary_json(const struct summary *s)
     put_count(&m, root, "steps", s->steps);
     put_number(&m, root, "time", s->time);
     put_errors(&m, root, s);
+    put_probes(&m, root, s);
+    put_profiles(&m, root, s);
     put_conservation(&m, root, s);
     put_cost(&m, root, s);
     put_plan(&m, root, s);

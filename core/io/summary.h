@@ -12,12 +12,32 @@
 
 struct summary_error {
     const char *field, *reference; /* field: "fluid.rho" */
-    double l1, l1_rel, l2, linf;
-    uint64_t n; /* particles compared */
+    const char *array;
+    double l1, l1_rel, l2, l2_rel, linf;
+    double linf_at[3]; /* where the largest is; NaN: nowhere */
+    double time;       /* compared then and not at the end; NaN: at the end */
+    uint64_t n;        /* particles compared */
+    uint64_t outside;  /* of the region, but beyond the reference's ends: left out */
+};
+/* Against a course in time. */
+struct summary_course {
+    const char *reference; /* NULL: none */
+    double begin, end, l1, l1_rel, l2, l2_rel, linf;
 };
 struct summary_probe {
     const char *name;
     double value, expected; /* expected: NaN if nothing is */
+    const char *file;       /* of its course in time; NULL: none */
+    uint64_t rows;
+    const char *const
+        *of; /* at points: n_of columns, n_point values of each; of NULL: one number */
+    size_t n_of, n_point;
+    const double *values; /* [n_point][n_of] */
+    struct summary_course course;
+};
+struct summary_profile {
+    const char *name, *file;
+    uint64_t rows;
 };
 struct summary_pass {
     const char *name;
@@ -66,6 +86,8 @@ struct summary {
     size_t n_error;
     const struct summary_probe *probe;
     size_t n_probe;
+    const struct summary_profile *profile;
+    size_t n_profile;
     double energy_drift, momentum_drift[3], angular_drift[3], mass_drift;
     int dim;
     struct summary_cost cost;
@@ -79,7 +101,7 @@ struct summary {
 };
 
 /* The file's contents; NULL when out of memory. A number that is not finite becomes null. A field
- * compared twice appears as "fluid.rho" and "fluid.rho@REFERENCE". */
+ * compared again appears as "fluid.rho@REFERENCE", then as "fluid.rho@REFERENCE.2" ... */
 cJSON *summary_json(const struct summary *s);
 int summary_write(const struct summary *s, const struct output *o, struct error *e);
 

@@ -21,6 +21,10 @@ void assignment_free(struct assignment *a);
 /* columns.c: which columns are state, which need an initial value, the rates, the integrator's own. */
 int columns_finish(struct plan *plan, struct error *e);
 
+/* measures.c: what the scene wants measured is there; exact solutions and tables are made ready. */
+int asked_bind(struct plan *plan, struct error *e);
+void asked_free(struct plan *plan);
+
 /* fusion.c: how many of the steps from `first` on are one function's parts (0: none), and which it is. */
 size_t fusion_find(const struct plan *plan, size_t first, const struct entry **whole);
 /* precision.c: which passes work in floats, which columns are held in them. */

@@ -175,34 +175,6 @@ static int check_boundaries(const struct plan *plan, struct error *e)
     return 0;
 }
 
-static int bind_exact(struct plan *plan, struct error *e)
-{
-    const struct scene *s = plan->scene;
-    plan->exact = calloc(s->n_compare ? s->n_compare : 1, sizeof *plan->exact);
-    if (!plan->exact)
-        return error_memory(e, "the plan", s->n_compare * sizeof *plan->exact);
-    for (size_t i = 0; i < s->n_compare; i++) {
-        const struct scene_compare *c = &s->compare[i];
-        const struct entry *entry = registry_find(plan->registry, KIND_EXACT, c->exact);
-        if (!entry)
-            return plan_unknown(plan, c->node, KIND_EXACT, c->exact, e);
-        const sph_exact *x = entry_exact(entry);
-        if (!(x->item->dims & (1u << plan->dim)))
-            return document_fail(s->doc, c->node, e,
-                                 "the exact solution \"%s\" is not for %d dimensions", c->exact,
-                                 plan->dim);
-        struct use *u = &plan->exact[i];
-        if (use_init(u, entry, x->item, x->life, e))
-            return -1;
-        if (use_set_all(u, s->doc, c->params, e))
-            return -1;
-        struct error why = {0};
-        if (use_create(u, plan->registry, plan->dim, &why))
-            return document_fail(s->doc, c->node, e, "%s", why.text);
-    }
-    return 0;
-}
-
 /* A list that reaches further is made less often, and costs each of its sweeps some per cent: the best is
  * flat. A third of the list's making was saved at no cost where one sweep walks it in 2D; in 3D the
  * list is large, and with several sweeps it is they that take the time. */
@@ -216,9 +188,6 @@ static void decide_skin(struct plan *plan)
         plan->skin = plan->dim < 3 && sweeps == 1 ? 0.15 : 0.1;
 }
 
-/* The names of arrays and properties in compare and probes exist. */
-static int check_reports(const struct plan *plan, struct error *e);
-
 int plan_make(struct plan *plan, struct registry *r, const struct scene *s, bool guarded,
               struct error *e)
 {
@@ -226,71 +195,15 @@ int plan_make(struct plan *plan, struct registry *r, const struct scene *s, bool
     if (find_scheme(plan, e) || find_kernel(plan, e) || find_integrator(plan, e) ||
         find_manager(plan, e) || recipe_make(plan, e) || columns_begin(plan, guarded, e) ||
         bind_passes(plan, e) || check_scheme_members(plan, e) || check_boundaries(plan, e) ||
-        columns_finish(plan, e) || bind_exact(plan, e) || check_reports(plan, e))
+        columns_finish(plan, e) || asked_bind(plan, e))
         return -1;
     decide_skin(plan);
     return 0;
 }
 
-static int array_named(const struct plan *plan, const char *name)
-{
-    for (size_t a = 0; a < plan->n_array; a++)
-        if (strcmp(plan->array[a].p.name, name) == 0)
-            return (int)a;
-    return -1;
-}
-
-static int check_property(const struct plan *plan, int array, const char *of, const cJSON *node,
-                          struct error *e)
-{
-    const struct particles *p = &plan->array[array].p;
-    char plain[128];
-    size_t length = strcspn(of, ".");
-    if (length < sizeof plain) {
-        memcpy(plain, of, length);
-        plain[length] = '\0';
-        if (particles_find(p, plain) >= 0)
-            return 0;
-    }
-    const char *name[128];
-    size_t n = 0;
-    for (size_t c = 0; c < p->n_column && n < 128; c++)
-        if (p->column[c].output)
-            name[n++] = p->column[c].name;
-    char near[512];
-    return document_fail(plan->scene->doc, node, e, "array \"%s\" has no property \"%s\"%s",
-                         p->name, of, text_suggest(near, sizeof near, of, name, n));
-}
-
-static int check_reports(const struct plan *plan, struct error *e)
-{
-    const struct scene *s = plan->scene;
-    for (size_t i = 0; i < s->n_compare; i++) {
-        int a = array_named(plan, s->compare[i].array);
-        if (a < 0)
-            return document_fail(s->doc, s->compare[i].node, e, "there is no particle array \"%s\"",
-                                 s->compare[i].array);
-        for (size_t k = 0; k < s->compare[i].n_fields; k++)
-            if (check_property(plan, a, s->compare[i].fields[k], s->compare[i].node, e))
-                return -1;
-    }
-    for (size_t i = 0; i < s->n_probe; i++) {
-        int a = array_named(plan, s->probe[i].array);
-        if (a < 0)
-            return document_fail(s->doc, s->probe[i].node, e, "there is no particle array \"%s\"",
-                                 s->probe[i].array);
-        if (check_property(plan, a, s->probe[i].of, s->probe[i].node, e))
-            return -1;
-    }
-    return 0;
-}
-
 void plan_free(struct plan *plan)
 {
-    for (size_t i = 0; plan->exact && i < plan->scene->n_compare; i++)
-        if (plan->exact[i].item)
-            use_fini(&plan->exact[i], plan->registry);
-    free(plan->exact);
+    asked_free(plan);
     bind_free(plan);
     recipe_free(plan);
     kernel_form_fini(&plan->kernel);

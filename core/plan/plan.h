@@ -7,6 +7,7 @@
 #include "neighbours/neighbours.h"
 #include "particles/particles.h"
 #include "registry/registry.h"
+#include "scene/read.h"
 #include "scene/scene.h"
 #include <cjson/cJSON.h>
 #include <stdio.h>
@@ -156,7 +157,9 @@ struct plan {
     const struct neighbour_manager *manager; /* NULL: as it suits */
     double skin;                             /* of neighbour lists, a fraction of the support */
     double reach_scale;                      /* largest over the functions */
-    struct use *exact;                       /* of scene.compare, one each */
+    struct use *exact;                       /* of scene.compare, one each; unset for a table */
+    struct table *compare_table;             /* of scene.compare, one each; empty for the exact */
+    struct table *probe_table;               /* references of scene.probe, one each */
     int64_t next_id;                         /* of a particle yet to be made */
 };
 
@@ -196,6 +199,11 @@ int use_set_all(struct use *u, const struct document *d, const cJSON *members, s
 /* The same of a parameter that is a table; in tables.c. */
 int use_set_table(struct use *u, const struct document *d, const cJSON *member, struct error *e);
 void use_tables_free(struct use_table *t);
+/* A table of the scene, and what to call it; in tables.c. Freed by table_free, also on failure. */
+int plan_table(struct table *t, const struct document *d, const cJSON *member, struct error *e);
+const char *plan_table_source(const cJSON *member);
+/* Index of the column that runs over a coordinate: that of its name, or the first (measures.c). */
+size_t plan_table_along(const struct table *t, enum along along);
 /* The plugin's own state as bytes, of a use that has one (state.c). `bytes` is the caller's to free. */
 struct use_state {
     void *bytes;

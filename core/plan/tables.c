@@ -28,40 +28,36 @@ void use_tables_free(struct use_table *t)
     }
 }
 
-static int read_file(struct use_table *t, const struct document *d, const cJSON *member,
+static int read_file(struct table *t, const struct document *d, const cJSON *member,
                      struct error *e)
 {
     struct error inner = {0};
     char *path = document_relative(d, member->valuestring);
     if (!path)
         return error_memory(e, "a path", strlen(member->valuestring));
-    int status = table_read(&t->read, path, NULL, &inner);
+    int status = table_read(t, path, NULL, &inner);
     free(path);
-    if (status)
-        return document_fail(d, member, e, "%s", inner.text);
-    t->source = text_format("%s", member->valuestring);
-    return t->source ? 0 : error_memory(e, "a name", 1);
+    return status ? document_fail(d, member, e, "%s", inner.text) : 0;
 }
 
 /* {"t": [0, 1], "v": [0, 2]} */
-static int read_object(struct use_table *t, const struct document *d, const cJSON *member,
+static int read_object(struct table *t, const struct document *d, const cJSON *member,
                        struct error *e)
 {
     const cJSON *list, *number;
-    t->source = text_format("%s", "scene");
-    t->read.n = (size_t)cJSON_GetArraySize(member->child);
+    t->n = (size_t)cJSON_GetArraySize(member->child);
     cJSON_ArrayForEach(list, member)
     {
         if (!cJSON_IsArray(list))
             return document_fail(d, list, e, "a column of a table is an array of numbers");
-        if ((size_t)cJSON_GetArraySize(list) != t->read.n)
+        if ((size_t)cJSON_GetArraySize(list) != t->n)
             return document_fail(d, list, e,
                                  "a column of a table is an array of numbers, as long as the "
                                  "others (%zu)",
-                                 t->read.n);
-        double *value = table_add(&t->read, list->string);
-        if (!value || !t->source)
-            return error_memory(e, "a table", t->read.n * sizeof *value);
+                                 t->n);
+        double *value = table_add(t, list->string);
+        if (!value)
+            return error_memory(e, "a table", t->n * sizeof *value);
         cJSON_ArrayForEach(number, list)
         {
             if (!cJSON_IsNumber(number))
@@ -72,18 +68,34 @@ static int read_object(struct use_table *t, const struct document *d, const cJSO
     return 0;
 }
 
-static int check_table(const struct use_table *t, const struct document *d, const cJSON *member,
+static int check_table(const struct table *t, const struct document *d, const cJSON *member,
                        struct error *e)
 {
-    if (t->read.n == 0 || t->read.n_column == 0)
+    if (t->n == 0 || t->n_column == 0)
         return document_fail(d, member, e, "the table has no rows");
-    for (size_t c = 0; c < t->read.n_column; c++)
-        for (size_t i = 0; i < t->read.n; i++)
-            if (!isfinite(t->read.column[c].value[i]))
+    for (size_t c = 0; c < t->n_column; c++)
+        for (size_t i = 0; i < t->n; i++)
+            if (!isfinite(t->column[c].value[i]))
                 return document_fail(d, member, e,
                                      "column \"%s\", row %zu of the table is not a finite number",
-                                     t->read.column[c].name, i + 1);
+                                     t->column[c].name, i + 1);
     return 0;
+}
+
+int plan_table(struct table *t, const struct document *d, const cJSON *member, struct error *e)
+{
+    if (!cJSON_IsString(member) && !cJSON_IsObject(member))
+        return document_fail(d, member, e,
+                             "%s is a table: give the name of a file or an object of columns",
+                             member->string);
+    if (cJSON_IsString(member) ? read_file(t, d, member, e) : read_object(t, d, member, e))
+        return -1;
+    return check_table(t, d, member, e);
+}
+
+const char *plan_table_source(const cJSON *member)
+{
+    return cJSON_IsString(member) ? member->valuestring : "scene";
 }
 
 static int publish(struct use_table *t, struct error *e)
@@ -113,13 +125,10 @@ int use_set_table(struct use *u, const struct document *d, const cJSON *member, 
         return error_memory(e, "a table", sizeof *t);
     t->next = u->tables;
     u->tables = t;
-    if (!cJSON_IsString(member) && !cJSON_IsObject(member))
-        return document_fail(d, member, e,
-                             "%s is a table: give the name of a file or an object of columns",
-                             member->string);
-    if (cJSON_IsString(member) ? read_file(t, d, member, e) : read_object(t, d, member, e))
-        return -1;
-    if (check_table(t, d, member, e) || publish(t, e))
+    t->source = text_format("%s", plan_table_source(member));
+    if (!t->source)
+        return error_memory(e, "a name", 1);
+    if (plan_table(&t->read, d, member, e) || publish(t, e))
         return -1;
     return config_set_table(&u->config, member->string, &t->table, e);
 }

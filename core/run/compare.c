@@ -1,46 +1,13 @@
-/* run/compare.c -- error norms against the exact solutions that the scene names. */
+/* run/compare.c -- error norms against the exact solutions and the tables that the scene names. */
 #include "base/text.h"
+#include "plan/measured.h"
+#include "run/norms.h"
 #include "run/region.h"
 #include "run/report.h"
+#include <sph/tables.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static void norms(const struct plan_array *a, const struct column *f, const sph_column *exact,
-                  const bool *inside, struct summary_error *out)
-{
-    int rho = particles_find(&a->p, "rho");
-    double volume = 0.0, scale = 0.0;
-    for (size_t i = 0; i < a->p.n; i++) {
-        if (!inside[i])
-            continue;
-        double density = rho < 0 ? 1.0 : region_value(&a->p.column[rho], 0, i);
-        double v = rho < 0 ? 1.0 : region_value(&a->p.column[a->mass], 0, i) / density;
-        double d2 = 0.0, s2 = 0.0;
-        for (uint32_t c = 0; c < f->ncomp; c++) {
-            double star = ((const double *)exact->data)[c * exact->plane + i];
-            d2 += (region_value(f, c, i) - star) * (region_value(f, c, i) - star);
-            s2 += star * star;
-        }
-        volume += v;
-        scale += v * sqrt(s2);
-        out->l1 += v * sqrt(d2);
-        out->l2 += v * d2;
-        out->linf = fmax(out->linf, sqrt(d2));
-        out->n++;
-    }
-    out->l1_rel = out->l1 / scale;
-    out->l1 /= volume;
-    out->l2 = sqrt(out->l2 / volume);
-}
-
-static bool wanted(const struct scene_compare *c, const char *name)
-{
-    for (size_t k = 0; k < c->n_fields; k++)
-        if (strcmp(c->fields[k], name) == 0)
-            return true;
-    return c->n_fields == 0;
-}
 
 /* Columns for the exact solution's batch: the array's own where it reads doubles, fresh ones where it
  * writes, or reads what is held in floats. */
@@ -73,77 +40,189 @@ static int exact_columns(const struct plan_array *a, const sph_item *item, sph_c
 }
 
 static int add_error(struct summary_error **out, size_t *n, const struct plan_array *a,
-                     const struct column *f, const char *reference, const sph_column *exact,
-                     const bool *inside, struct error *e)
+                     const char *field, const char *reference, const struct deviation *d,
+                     size_t outside, struct error *e)
 {
     struct summary_error *bigger = realloc(*out, (*n + 1) * sizeof *bigger);
     if (!bigger)
         return error_memory(e, "errors", (*n + 1) * sizeof *bigger);
     *out = bigger;
-    bigger[*n] = (struct summary_error){.reference = reference};
-    bigger[*n].field = text_format("%s.%s", a->p.name, f->name);
+    bigger[*n] = (struct summary_error){
+        .reference = reference, .array = a->p.name, .outside = outside, .time = NAN};
+    bigger[*n].field = text_format("%s.%s", a->p.name, field);
     if (!bigger[*n].field)
         return error_memory(e, "errors", 1);
-    norms(a, f, exact, inside, &bigger[*n]);
+    norms_of(a, d, &bigger[*n]);
     *n += 1;
     return 0;
 }
 
-static int compare(const struct run *r, size_t index, struct summary_error **out, size_t *n,
-                   struct error *e)
+/* -- Exact solutions --------------------------------------------------------------------------- */
+
+/* Of all components of a column, or of one (k). */
+static void deviate(const struct plan_array *a, const struct column *f, const sph_column *exact,
+                    const struct measured *m, struct deviation *d)
+{
+    const bool one = m && m->kind == MEASURED_COMPONENT;
+    for (size_t i = 0; i < a->p.n; i++) {
+        d->d2[i] = d->s2[i] = 0.0;
+        for (uint32_t c = one ? m->k : 0; c < (one ? m->k + 1 : f->ncomp); c++) {
+            const double star = ((const double *)exact->data)[c * exact->plane + i];
+            const double difference = region_value(f, c, i) - star;
+            d->d2[i] += difference * difference;
+            d->s2[i] += star * star;
+        }
+    }
+}
+
+/* The fields that the scene asks for of one property that the solution gives; all of it if it asks for none. */
+static int add_exact(const struct scene_compare *c, const struct plan_array *a, int column,
+                     const sph_column *exact, struct deviation *d, struct summary_error **out,
+                     size_t *n, struct error *e)
+{
+    struct measured m;
+    bool missing;
+    const struct column *f = &a->p.column[column];
+    if (c->n_fields == 0) {
+        deviate(a, f, exact, NULL, d);
+        return add_error(out, n, a, f->name, c->exact, d, 0, e);
+    }
+    for (size_t k = 0; k < c->n_fields; k++) {
+        if (measured_find(&a->p, c->fields[k], &m, &missing) || m.column != column)
+            continue;
+        deviate(a, f, exact, &m, d);
+        if (add_error(out, n, a, c->fields[k], c->exact, d, 0, e))
+            return -1;
+    }
+    return 0;
+}
+
+static int run_exact(const struct run *r, const struct use *use, const struct plan_array *a,
+                     const sph_column *column, struct error *e)
+{
+    sph_batch b = use_batch(r->plan, use, column, use->item->props.count, a->p.n);
+    char why[512];
+    b.time = r->time;
+    b.step = r->step;
+    const sph_status s = entry_exact(use->entry)->run(&b);
+    if (s == SPH_OK)
+        return 0;
+    registry_reason(r->plan->registry, s, why, sizeof why);
+    return error_set(e, EXIT_RUN, "exact solution \"%s\": %s", use->item->name, why);
+}
+
+static int compare_exact(const struct run *r, size_t index, const struct plan_array *a,
+                         struct deviation *d, struct summary_error **out, size_t *n,
+                         struct error *e)
+{
+    const struct scene_compare *c = &r->plan->scene->compare[index];
+    const struct use *use = &r->plan->exact[index];
+    const uint32_t count = use->item->props.count;
+    sph_column *column = calloc(count + 1, sizeof *column);
+    if (!column)
+        return error_memory(e, "a comparison", a->p.n);
+    int status = exact_columns(a, use->item, column, e);
+    if (!status)
+        status = run_exact(r, use, a, column, e);
+    for (uint32_t k = 0; k < count; k++) {
+        const sph_prop *prop = list_at(&use->item->props, k);
+        const int f = particles_find(&a->p, prop->name);
+        if ((prop->access & SPH_DST_WRITE) && !status && f >= 0)
+            status = add_exact(c, a, f, &column[k], d, out, n, e);
+        if (f < 0 || column[k].data != a->p.column[f].data)
+            free(column[k].data);
+    }
+    free(column);
+    return status;
+}
+
+/* -- Tables ------------------------------------------------------------------------------------ */
+
+/* Particles beyond the table's ends do not count; how many are there. */
+static size_t leave_outside(const struct plan_array *a, const struct scene_compare *c,
+                            const struct table_column *along, size_t rows, double *at, bool *inside)
+{
+    size_t outside = 0;
+    for (size_t i = 0; i < a->p.n; i++) {
+        double x[3];
+        measured_place(&a->p, a->position, i, x);
+        at[i] = c->along == ALONG_R ? scene_radius(&c->about, a->p.dim, x) : x[c->along];
+        const bool within = at[i] >= along->value[0] && at[i] <= along->value[rows - 1];
+        outside += inside[i] && !within;
+        inside[i] = inside[i] && within;
+    }
+    return outside;
+}
+
+static int add_table(const struct scene_compare *c, const struct plan_array *a,
+                     const struct table *t, const double *at, size_t outside, const char *field,
+                     const char *column, struct deviation *d, struct summary_error **out, size_t *n,
+                     struct error *e)
+{
+    struct measured m;
+    bool missing;
+    const int value = table_find(t, column);
+    const sph_table rows = {.n_rows = t->n};
+    if (value < 0 || measured_find(&a->p, field, &m, &missing))
+        return 0;
+    for (size_t i = 0; i < a->p.n; i++) {
+        double x[3];
+        measured_place(&a->p, a->position, i, x);
+        const double star = sph_table_linear(&rows, t->column[plan_table_along(t, c->along)].value,
+                                             t->column[value].value, at[i]);
+        const double difference = measured_value(&a->p, &m, &c->about, i, x, 0) - star;
+        d->d2[i] = difference * difference;
+        d->s2[i] = star * star;
+    }
+    return add_error(out, n, a, field, plan_table_source(c->table), d, outside, e);
+}
+
+static int compare_table(const struct run *r, size_t index, const struct plan_array *a,
+                         struct deviation *d, struct summary_error **out, size_t *n,
+                         struct error *e)
+{
+    const struct scene_compare *c = &r->plan->scene->compare[index];
+    const struct table *t = &r->plan->compare_table[index];
+    const size_t along = plan_table_along(t, c->along);
+    double *at = malloc((a->p.n + 1) * sizeof *at);
+    if (!at)
+        return error_memory(e, "a comparison", a->p.n * sizeof *at);
+    const size_t outside = leave_outside(a, c, &t->column[along], t->n, at, d->inside);
+    int status = 0;
+    for (size_t k = 0; k < c->n_fields && !status; k++)
+        status = add_table(c, a, t, at, outside, c->fields[k], c->columns[k], d, out, n, e);
+    for (size_t k = 0; k < t->n_column && !c->n_fields && !status; k++)
+        if (k != along)
+            status =
+                add_table(c, a, t, at, outside, t->column[k].name, t->column[k].name, d, out, n, e);
+    free(at);
+    return status;
+}
+
+/* -- Either ------------------------------------------------------------------------------------ */
+
+int compare_take(const struct run *r, size_t index, struct summary_error **out, size_t *n,
+                 struct error *e)
 {
     const struct plan *plan = r->plan;
     const struct scene_compare *c = &plan->scene->compare[index];
-    const struct use *use = &plan->exact[index];
     const struct plan_array *a = NULL;
+    struct deviation d = {0};
     for (size_t k = 0; k < plan->n_array; k++)
         if (strcmp(plan->array[k].p.name, c->array) == 0)
             a = &plan->array[k];
     if (!a || a->p.n == 0)
         return 0;
-    uint32_t count = use->item->props.count;
-    sph_column *column = calloc(count + 1, sizeof *column);
-    bool *inside = calloc(a->p.n, sizeof *inside);
-    int status = column && inside ? 0 : error_memory(e, "a comparison", a->p.n);
+    int status = deviation_init(&d, a->p.n, e);
     if (!status)
-        status = exact_columns(a, use->item, column, e) || region_select(a, c->where, inside, e)
-                     ? -1
-                     : 0;
-    if (!status) {
-        sph_batch b = use_batch(plan, use, column, count, a->p.n);
-        b.time = r->time;
-        b.step = r->step;
-        sph_status s = entry_exact(use->entry)->run(&b);
-        char why[512];
-        if (s != SPH_OK) {
-            registry_reason(plan->registry, s, why, sizeof why);
-            status = error_set(e, EXIT_RUN, "exact solution \"%s\": %s", c->exact, why);
-        }
-    }
-    for (uint32_t k = 0; column && k < count; k++) {
-        const sph_prop *prop = list_at(&use->item->props, k);
-        const int f = particles_find(&a->p, prop->name);
-        if ((prop->access & SPH_DST_WRITE) && !status && f >= 0 && wanted(c, prop->name))
-            status = add_error(out, n, a, &a->p.column[f], c->exact, &column[k], inside, e);
-        if (f < 0 || column[k].data != a->p.column[f].data)
-            free(column[k].data);
-    }
-    free(column);
-    free(inside);
+        status = region_select(a, c->where, d.inside, e);
+    if (!status)
+        status = (c->table ? compare_table : compare_exact)(r, index, a, &d, out, n, e);
+    deviation_fini(&d);
     return status;
 }
 
-int report_errors(const struct run *r, struct summary_error **out, size_t *n, struct error *e)
-{
-    *out = NULL;
-    *n = 0;
-    for (size_t i = 0; i < r->plan->scene->n_compare; i++)
-        if (compare(r, i, out, n, e))
-            return -1;
-    return 0;
-}
-
-void report_errors_free(struct summary_error *errors, size_t n)
+void compare_free(struct summary_error *errors, size_t n)
 {
     for (size_t i = 0; i < n; i++)
         free((void *)(uintptr_t)errors[i].field);

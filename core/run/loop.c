@@ -126,6 +126,9 @@ static int after_step(struct loop *l, struct error *e)
                           "the energy is no longer a number");
     if (logged && (watch_energy(r, &l->first, &l->last, e) || loop_log(l, e)))
         return -1;
+    if (!last && measures_due(&l->measures) &&
+        (run_settle(r, e) || measures_take(&l->measures, MEASURES_ON_THE_WAY, e)))
+        return -1;
     watch_step(r);
     while (by_time && l->next_log <= r->time)
         l->next_log += l->scene->output.log_every;
@@ -151,7 +154,9 @@ static int start(struct loop *l, struct error *e)
     l->next_log =
         isfinite(l->scene->output.log_every) ? l->begin + l->scene->output.log_every : INFINITY;
     l->ended = finished(l);
-    return loop_log(l, e) || loop_snapshot(l, e) ? -1 : 0;
+    return loop_log(l, e) || loop_snapshot(l, e) || measures_take(&l->measures, MEASURES_START, e)
+               ? -1
+               : 0;
 }
 
 double loop_seconds(const struct loop *l)
@@ -179,6 +184,8 @@ static int steps(struct loop *l, struct error *e)
     } else if (watch_state(r, e)) {
         return -1;
     }
+    if (measures_take(&l->measures, MEASURES_END, e))
+        return -1;
     r->cost.loop = loop_seconds(l);
     return loop_snapshot(l, e);
 }
@@ -204,6 +211,8 @@ static int loop_begin(struct loop *l, struct plan *plan, struct error *e)
                  : l->options->resume ? log_append(&l->log, path, plan->dim, e)
                                       : log_open(&l->log, path, plan->dim, e);
     free(path);
+    if (!status)
+        status = measures_open(&l->measures, &l->run, l->out, l->options->resume != NULL, e);
     progress_start(&l->progress, l->options->progress, l->begin, l->end);
     l->progress.started -= omp_get_wtime() - l->started; /* a run that goes on has begun earlier */
     return status;
@@ -231,6 +240,8 @@ int loop_run(struct plan *plan, const struct output *out, const struct loop_opti
     if (!status)
         status = log_close(&l.log, e);
     if (!status)
+        status = measures_close(&l.measures, e);
+    if (!status)
         status = loop_draw(&l, e);
     if (!status)
         status = loop_summarise(&l, o->stop && *o->stop ? "stopped" : "done", NULL, e);
@@ -238,6 +249,8 @@ int loop_run(struct plan *plan, const struct output *out, const struct loop_opti
         keep_failed(&l, e);
     struct error ignored = {0};
     log_close(&l.log, &ignored);
+    measures_close(&l.measures, &ignored);
+    measures_free(&l.measures);
     run_free(&l.run);
     free(l.picture);
     cJSON_free(l.scene_text);

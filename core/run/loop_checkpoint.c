@@ -104,7 +104,9 @@ int loop_checkpoint(struct loop *l, struct error *e)
     char *temporary = output_begin(l->out, name);
     int status = temporary ? 0 : error_memory(e, "a path", 1);
     if (!status)
-        status = log_sync(&l->log, e); /* rows before this step are not written again */
+        status = csv_sync(&l->log.csv, e); /* rows before this step are not written again */
+    if (!status)
+        status = measures_sync(&l->measures, e);
     if (!status)
         status = write_file(l, temporary, e);
     if (!status)
@@ -158,10 +160,14 @@ int loop_resume(struct loop *l, struct error *e)
     l->checkpoints = isfinite(every) ? floor((l->run.time - l->begin) / every) : 0.0;
     if (here)
         l->checkpointed = l->run.step;
+    if (!here)
+        return output_clear(l->out, e);
     /* Whatever stands there of later is made again. */
-    return here ? output_cut(l->out, l->snapshots, l->run.step, e) ||
-                          log_cut(l->out, "log.csv", l->run.step, e)
-                      ? -1
-                      : 0
-                : output_clear(l->out, e);
+    char *log = output_path(l->out, "log.csv");
+    int status =
+        log ? output_cut(l->out, l->snapshots, l->run.step, e) : error_memory(e, "a path", 1);
+    if (!status)
+        status = csv_cut_from(log, l->run.step, e);
+    free(log);
+    return status;
 }

@@ -4,7 +4,6 @@
 #include "io/snapshot.h"
 #include "io/summary.h"
 #include "run/loop_state.h"
-#include "run/report.h"
 #include "run/watch.h"
 #include <omp.h>
 #include <stdlib.h>
@@ -63,11 +62,8 @@ struct summary_parts {
     uint64_t *count;
     struct summary_pass *pass;
     struct summary_plugin *plugin;
-    struct summary_error *error;
-    struct summary_probe *probe;
     struct summary_watch watch[WATCH_CAUSES], failure;
     size_t n_watch;
-    size_t n_error, n_probe;
     cJSON *plan;
 };
 
@@ -77,12 +73,10 @@ static void parts_free(struct summary_parts *q)
     free(q->count);
     free(q->pass);
     free(q->plugin);
-    report_errors_free(q->error, q->n_error);
-    free(q->probe);
     cJSON_Delete(q->plan);
 }
 
-static int parts_make(const struct loop *l, struct summary_parts *q, bool good, struct error *e)
+static int parts_make(const struct loop *l, struct summary_parts *q, struct error *e)
 {
     const struct plan *plan = l->run.plan;
     q->name = calloc(plan->n_array + 1, sizeof *q->name);
@@ -104,12 +98,7 @@ static int parts_make(const struct loop *l, struct summary_parts *q, bool good, 
         q->plugin[i] =
             (struct summary_plugin){p->name, p->version, p->path, p->abi_major, p->abi_minor};
     }
-    if (!good)
-        return 0;
-    return report_errors(&l->run, &q->error, &q->n_error, e) ||
-                   report_probes(&l->run, &q->probe, &q->n_probe, e)
-               ? -1
-               : 0;
+    return 0;
 }
 
 static struct summary_watch watch_of(enum watch_cause cause, const struct failure *f, uint64_t n)
@@ -166,7 +155,7 @@ int loop_summarise(struct loop *l, const char *status, const char *reason, struc
 {
     const struct run *r = &l->run;
     struct summary_parts q = {0};
-    if (parts_make(l, &q, strcmp(status, "failed") != 0, e)) {
+    if (parts_make(l, &q, e)) {
         parts_free(&q);
         return -1;
     }
@@ -187,10 +176,6 @@ int loop_summarise(struct loop *l, const char *status, const char *reason, struc
                         .array_n = q.count,
                         .steps = r->step,
                         .time = r->time,
-                        .error = q.error,
-                        .n_error = q.n_error,
-                        .probe = q.probe,
-                        .n_probe = q.n_probe,
                         .energy_drift = l->energy_drift,
                         .mass_drift =
                             l->first.mass > 0.0 ? l->last.mass / l->first.mass - 1.0 : 0.0,
@@ -203,6 +188,8 @@ int loop_summarise(struct loop *l, const char *status, const char *reason, struc
                         .threads = r->threads,
                         .ranks = 1,
                         .picture = l->picture};
+    if (strcmp(status, "failed") != 0)
+        measures_summary(&l->measures, &s);
     memcpy(s.momentum_drift, l->momentum_drift, sizeof s.momentum_drift);
     memcpy(s.angular_drift, l->angular_drift, sizeof s.angular_drift);
     s.cost.wall = omp_get_wtime() - l->started;

@@ -5,6 +5,7 @@
 
 #include "io/log.h"
 #include "run/loop.h"
+#include "run/measures.h"
 
 /* A run of the loop. */
 struct loop {
@@ -13,6 +14,7 @@ struct loop {
     const struct output *out;
     const struct scene *scene;
     struct log log;
+    struct measures measures;
     struct progress progress;
     struct totals first, last;
     double energy_drift, momentum_drift[3], angular_drift[3];

@@ -1,53 +1,41 @@
-/* run/probes.c -- the numbers that a scene asks for of its particles at the end. */
+/* run/probes.c -- the numbers that a scene asks for of all its particles. Reads them, touches nothing. */
+#include "plan/measured.h"
 #include "run/region.h"
 #include "run/report.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* "v.x" is a component, "v" of a vector its length, "rho" a scalar. */
-static double probed(const struct plan_array *a, const char *of, size_t i)
+/* An array's particles, and what is asked of them. */
+struct probed {
+    const struct plan_array *a;
+    const struct scene_probe *p;
+    struct measured m;
+    const bool *inside;
+};
+
+static double value_of(const struct probed *q, size_t i)
 {
-    char plain[64] = "";
-    size_t length = strcspn(of, ".");
-    if (length < sizeof plain)
-        memcpy(plain, of, length);
-    int f = particles_find(&a->p, plain);
-    if (f < 0)
-        return NAN;
-    const struct column *column = &a->p.column[f];
-    if (column->type == SPH_INT64)
-        return (double)((const int64_t *)column->data)[i];
-    if (column->type == SPH_INT32)
-        return (double)((const int32_t *)column->data)[i];
-    if (of[length] == '.') {
-        uint32_t c = (uint32_t)(of[length + 1] - 'x');
-        return c < column->ncomp ? region_value(column, c, i) : NAN;
-    }
-    if (column->ncomp == 1)
-        return region_value(column, 0, i);
-    double s = 0.0;
-    for (uint32_t c = 0; c < column->ncomp; c++)
-        s += region_value(column, c, i) * region_value(column, c, i);
-    return sqrt(s);
+    double x[3];
+    measured_place(&q->a->p, q->a->position, i, x);
+    return measured_value(&q->a->p, &q->m, &q->p->sample.about, i, x, 0);
 }
 
-static double radius(const struct plan_array *a, size_t i)
+static double radius(const struct probed *q, size_t i)
 {
-    double r2 = 0.0;
-    for (int c = 0; c < a->p.dim; c++)
-        r2 += region_value(&a->p.column[a->position], (uint32_t)c, i) *
-              region_value(&a->p.column[a->position], (uint32_t)c, i);
-    return sqrt(r2);
+    double x[3];
+    measured_place(&q->a->p, q->a->position, i, x);
+    return scene_radius(&q->p->sample.about, q->a->p.dim, x);
 }
 
 /* From outside inwards: the radius at which the shells' means reach the level, between two shells' middles. */
-static double crossing(const struct plan_array *a, const struct scene_probe *p, const bool *inside,
-                       struct error *e)
+static double crossing(const struct probed *q, struct error *e)
 {
+    const struct scene_probe *p = q->p;
+    const size_t particles = q->a->p.n;
     double far = 0.0;
-    for (size_t i = 0; i < a->p.n; i++)
-        far = inside[i] ? fmax(far, radius(a, i)) : far;
+    for (size_t i = 0; i < particles; i++)
+        far = q->inside[i] ? fmax(far, radius(q, i)) : far;
     size_t n = (size_t)(far / p->shell) + 1;
     if (n > 10000000) {
         error_set(e, EXIT_RUN, "probe \"%s\": too many shells", p->name);
@@ -58,11 +46,11 @@ static double crossing(const struct plan_array *a, const struct scene_probe *p, 
         error_memory(e, "shells", 2 * n * sizeof *sum);
         return NAN;
     }
-    for (size_t i = 0; i < a->p.n; i++) {
-        size_t k = (size_t)(radius(a, i) / p->shell);
-        if (!inside[i] || k >= n)
+    for (size_t i = 0; i < particles; i++) {
+        size_t k = (size_t)(radius(q, i) / p->shell);
+        if (!q->inside[i] || k >= n)
             continue;
-        sum[k] += probed(a, p->of, i);
+        sum[k] += value_of(q, i);
         count[k] += 1.0;
     }
     double outer = NAN, outer_r = NAN;
@@ -82,50 +70,46 @@ static double crossing(const struct plan_array *a, const struct scene_probe *p, 
     return found;
 }
 
-static double probe(const struct plan_array *a, const struct scene_probe *p, const bool *inside,
-                    struct error *e)
+static double number(const struct probed *q)
 {
-    if (p->kind == PROBE_CROSSING)
-        return crossing(a, p, inside, e);
-    double out = p->kind == PROBE_MIN ? INFINITY : p->kind == PROBE_MAX ? -INFINITY : 0.0;
+    const enum probe_kind kind = q->p->kind;
+    double out = kind == PROBE_MIN ? INFINITY : kind == PROBE_MAX ? -INFINITY : 0.0;
     double n = 0.0;
-    for (size_t i = 0; i < a->p.n; i++) {
-        if (!inside[i])
+    for (size_t i = 0; i < q->a->p.n; i++) {
+        if (!q->inside[i])
             continue;
-        double value = probed(a, p->of, i);
-        out = p->kind == PROBE_MIN   ? fmin(out, value)
-              : p->kind == PROBE_MAX ? fmax(out, value)
-                                     : out + value;
+        const double value = value_of(q, i);
+        out = kind == PROBE_MIN   ? fmin(out, value)
+              : kind == PROBE_MAX ? fmax(out, value)
+                                  : out + value;
         n += 1.0;
     }
-    return n == 0.0 ? NAN : p->kind == PROBE_MEAN ? out / n : out;
+    if (kind == PROBE_SUM)
+        return out;
+    return n == 0.0 ? NAN : kind == PROBE_MEAN ? out / n : out;
 }
 
-int report_probes(const struct run *r, struct summary_probe **out, size_t *n, struct error *e)
+int probe_take(const struct run *r, size_t index, double *out, struct error *e)
 {
-    const struct scene *s = r->plan->scene;
-    *n = 0;
-    *out = calloc(s->n_probe + 1, sizeof **out);
-    if (!*out)
-        return error_memory(e, "probes", s->n_probe * sizeof **out);
-    for (size_t i = 0; i < s->n_probe; i++) {
-        const struct scene_probe *p = &s->probe[i];
-        const struct plan_array *a = NULL;
-        for (size_t k = 0; k < r->plan->n_array; k++)
-            if (strcmp(r->plan->array[k].p.name, p->array) == 0)
-                a = &r->plan->array[k];
-        if (!a)
-            continue;
-        bool *inside = calloc(a->p.n + 1, sizeof *inside);
-        if (!inside)
-            return error_memory(e, "a probe", a->p.n);
-        if (region_select(a, p->where, inside, e)) {
-            free(inside);
-            return -1;
-        }
-        (*out)[*n] = (struct summary_probe){p->name, probe(a, p, inside, e), p->expected};
-        *n += 1;
-        free(inside);
-    }
-    return 0;
+    const struct scene_probe *p = &r->plan->scene->probe[index];
+    struct probed q = {.p = p};
+    struct error inner = {0};
+    bool missing;
+    *out = NAN;
+    for (size_t k = 0; k < r->plan->n_array; k++)
+        if (strcmp(r->plan->array[k].p.name, p->array) == 0)
+            q.a = &r->plan->array[k];
+    if (!q.a || measured_find(&q.a->p, p->of, &q.m, &missing))
+        return 0;
+    bool *inside = calloc(q.a->p.n + 1, sizeof *inside);
+    if (!inside)
+        return error_memory(e, "a probe", q.a->p.n);
+    q.inside = inside;
+    int status = region_select(q.a, p->where, inside, e);
+    if (!status)
+        *out = p->kind == PROBE_CROSSING ? crossing(&q, &inner) : number(&q);
+    free(inside);
+    return !status && inner.text[0]
+               ? error_set(e, (enum exit_code)inner.exit_code, "%s", inner.text)
+               : status;
 }

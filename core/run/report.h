@@ -1,17 +1,19 @@
-/* run/report.h -- what a run says of itself at the end: errors against exact solutions, probes, conservation,
- * cost. */
+/* run/report.h -- what is measured of the particles as they are now: errors against references, probes,
+ * profiles. When that is, and where it is written: measures.h. */
 #ifndef RUN_REPORT_H
 #define RUN_REPORT_H
 
 #include "io/summary.h"
 #include "run/run.h"
 
-/* Errors of every comparison of the scene; *out is freed with report_errors_free. Norms over the particles of
- * the region: l1 = sum V |f - f*| / sum V, l1_rel = sum V |f - f*| / sum V |f*|, l2 = sqrt(sum V |f - f*|^2 /
- * sum V), linf the maximum; V = m / rho; of a vector, | | is its length. */
-int report_errors(const struct run *r, struct summary_error **out, size_t *n, struct error *e);
-void report_errors_free(struct summary_error *errors, size_t n);
-/* Values of the scene's probes; NaN where nothing is found. */
-int report_probes(const struct run *r, struct summary_probe **out, size_t *n, struct error *e);
+/* Errors of a comparison of the scene (norms.h), added to *out, which is freed with compare_free. */
+int compare_take(const struct run *r, size_t index, struct summary_error **out, size_t *n,
+                 struct error *e);
+void compare_free(struct summary_error *errors, size_t n);
+/* The number that a probe of all particles is; NaN where nothing is found. */
+int probe_take(const struct run *r, size_t index, double *out, struct error *e);
+/* row[bins][2 n_of + 1]: mean and standard deviation of each property, weighted by the particles' volumes, then
+ * how many there are. NaN in empty bins. A value at max counts to the last bin. */
+int profile_bins(const struct run *r, const struct scene_profile *p, double *row, struct error *e);
 
 #endif

@@ -407,9 +407,9 @@ static int compile_head(struct scene *s, const cJSON *root, struct error *e)
 static int compile(struct scene *s, const cJSON *root, struct error *e)
 {
     static const char *const keys[] = {
-        "$schema",   "title",      "dimensions", "plugins", "units", "domain", "materials",
-        "particles", "boundaries", "scheme",     "kernel",  "time",  "limits", "neighbours",
-        "precision", "compare",    "probes",     "output",  "watch"};
+        "$schema",   "title",      "dimensions", "plugins",  "units",  "domain", "materials",
+        "particles", "boundaries", "scheme",     "kernel",   "time",   "limits", "neighbours",
+        "precision", "compare",    "probes",     "profiles", "output", "watch"};
     if (!root->child)
         return document_fail(s->doc, root, e, "the scene is empty");
     if (json_keys(s->doc, root, keys, COUNT(keys), e) < 0 || compile_head(s, root, e) < 0 ||
@@ -424,6 +424,7 @@ static int compile(struct scene *s, const cJSON *root, struct error *e)
         compile_neighbours(s, json_get(root, "neighbours"), e) < 0 ||
         compile_precision(s, root, e) < 0 || scene_compares(s, json_get(root, "compare"), e) < 0 ||
         scene_probes(s, json_get(root, "probes"), e) < 0 ||
+        scene_profiles(s, json_get(root, "profiles"), e) < 0 ||
         scene_watches(s, json_get(root, "watch"), e) < 0)
         return -1;
     return scene_output(s, json_get(root, "output"), e);

@@ -7,6 +7,7 @@
 #include "domain/sides.h"
 #include "scene/json.h"
 #include "scene/shape.h"
+#include <math.h>
 #include <stdint.h>
 
 /* Particles that a scene may make; more needs "limits": guards against 10^9 by a slip of the
@@ -94,13 +95,36 @@ struct scene_edit {
     const cJSON *params; /* object: the members that are none of the above */
 };
 
+/* The moments at which something is measured, besides the end. Of several, each counts. */
+struct scene_moments {
+    double every;     /* time between them; INFINITY: not given */
+    uint64_t steps;   /* every so many steps; 0: not given */
+    const double *at; /* these, rising */
+    size_t n_at;
+};
+
+/* What r, "v.r" and "v.phi" are taken about. */
+struct scene_about {
+    double center[3];
+    int axis; /* in 3D: the line through the center along it; -1: the point (v.phi: about z) */
+};
+
+enum along { ALONG_X, ALONG_Y, ALONG_Z, ALONG_R };
+
 struct scene_compare {
     const cJSON *node;
-    const char *array, *exact;
-    const cJSON *params; /* of the exact solution: the object minus the known keys */
-    const char *where;   /* region, an expression of x, y, z, r; NULL: everywhere */
-    const char **fields; /* NULL: all that the solution knows and the array has */
+    const char *array;
+    const char *exact;    /* NULL: the reference is a table */
+    const cJSON *params;  /* of the exact solution: the object minus the known keys */
+    const cJSON *table;   /* file name or object of columns; NULL: an exact solution */
+    enum along along;     /* what the table's first column, or that of its name, runs over */
+    const char *where;    /* region, an expression of x, y, z, r; NULL: everywhere */
+    const char **fields;  /* NULL: all that the reference knows and the array has */
+    const char **columns; /* of the table: that of each field */
     size_t n_fields;
+    double time; /* that the table is for: compared then and not at the end; NaN: the end */
+    struct scene_about about;
+    struct scene_moments when;
 };
 
 /* A boundary condition on some arrays, for others. */
@@ -112,17 +136,50 @@ struct scene_boundary {
     const cJSON *params; /* the object minus the known keys */
 };
 
-/* A probe: a number made of the particles at the end (and shown in the table). */
-enum probe_kind { PROBE_MEAN, PROBE_CROSSING, PROBE_MIN, PROBE_MAX };
+/* A probe: a number made of the particles, or their values at points by the kernel. */
+enum probe_kind { PROBE_MEAN, PROBE_CROSSING, PROBE_MIN, PROBE_MAX, PROBE_SUM, PROBE_POINTS };
+
+/* Values at points, interpolated from particles: probes and profiles. */
+struct scene_sample {
+    const char **array, **of; /* components by "v.x" */
+    size_t n_array, n_of;
+    const double *point; /* [n_point][3] */
+    size_t n_point;
+    bool plain; /* not divided by the kernel's own sum */
+    struct scene_about about;
+};
+
+/* A measured course in time that a probe is held against. */
+struct scene_reference {
+    const cJSON *table; /* NULL: none */
+    const char *time, *value, *of;
+    double scale_time, scale; /* what the table's numbers are multiplied by */
+};
+
 struct scene_probe {
     const cJSON *node;
-    const char *name, *array;
+    const char *name, *array; /* array: but for points */
     enum probe_kind kind;
-    const char *of;      /* a property; component by "v.x" */
+    const char *of;      /* a property; component by "v.x"; but for points */
     const char *where;   /* expression, or NULL */
     double shell, level; /* crossing: where the mean of shells (in r) of this width crosses the
                           * level, from outside */
     double expected;     /* NaN: none */
+    struct scene_sample sample; /* points */
+    struct scene_moments when;
+    struct scene_reference reference;
+};
+
+/* Values along a line, or means over bins of a coordinate. */
+struct scene_profile {
+    const cJSON *node;
+    const char *name;
+    struct scene_sample sample;
+    const char *where; /* bins: expression, or NULL */
+    enum along along;  /* bins: of which coordinate */
+    size_t bins;       /* 0: a line */
+    double min, max;
+    struct scene_moments when;
 };
 
 /* Signs that a run has gone wrong, and what is done about each: "watch". */
@@ -196,6 +253,8 @@ struct scene {
     size_t n_compare;
     struct scene_probe *probe;
     size_t n_probe;
+    struct scene_profile *profile;
+    size_t n_profile;
     struct {
         const cJSON *node;
         double every;       /* time between snapshots; INFINITY: only first and last */
@@ -230,5 +289,18 @@ extern const char *const scene_variables[SCENE_VARIABLES]; /* x, y, z, r, spacin
 /* Regions know only the first four. */
 #define SCENE_REGION_VARIABLES 4
 void scene_values(const double *x, int dim, double spacing, double values[SCENE_VARIABLES]);
+
+/* Whether measured at other moments than the end. */
+static inline bool moments_any(const struct scene_moments *m)
+{
+    return isfinite(m->every) || m->steps || m->n_at;
+}
+
+/* The distance that `about` says, of x[dim]. */
+double scene_radius(const struct scene_about *about, int dim, const double *x);
+
+/* The part of a file's name that a probe's or a profile's name gives: what is no letter, digit, "-", "." or
+ * beyond ASCII becomes "_". Fresh memory; NULL when out of it. */
+char *scene_file_part(const char *name);
 
 #endif

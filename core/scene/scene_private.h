@@ -34,6 +34,33 @@ int scene_fill(struct scene *s, const cJSON *node, struct scene_fill *fill, stru
 int scene_scheme(struct scene *s, const cJSON *node, struct error *e);
 int scene_compares(struct scene *s, const cJSON *node, struct error *e);
 int scene_probes(struct scene *s, const cJSON *node, struct error *e);
+int scene_profiles(struct scene *s, const cJSON *node, struct error *e);
+
+/* scene_sample.c: parts of what is measured. Member "where", if given: an expression of a particle's
+ * position. */
+int scene_where(struct scene *s, const cJSON *node, const char **out, struct error *e);
+/* The list under `node`: room for it; an absent one is empty. */
+int scene_list(struct scene *s, const cJSON *node, const char *what, size_t size, void **out,
+               struct error *e);
+/* Members "every", "steps" and, of a comparison, "at". */
+int scene_moments(struct scene *s, const cJSON *node, bool with_at, struct scene_moments *out,
+                  struct error *e);
+/* Member "time": a moment within the run's. */
+int scene_time_of(struct scene *s, const cJSON *node, double *out, struct error *e);
+/* Members "center" and "axis". */
+int scene_about(struct scene *s, const cJSON *node, struct scene_about *out, struct error *e);
+int scene_along(struct scene *s, const cJSON *node, enum along *out, struct error *e);
+/* Members "array", "of", "plain", "center" and "axis". */
+int scene_sample(struct scene *s, const cJSON *node, struct scene_sample *out, struct error *e);
+/* Member "at": a point or several. */
+int scene_points(struct scene *s, const cJSON *node, struct scene_sample *out, struct error *e);
+/* Members "from", "to" and "points". */
+int scene_line(struct scene *s, const cJSON *node, struct scene_sample *out, struct error *e);
+/* Member "reference" of a probe that measures at `when`. */
+int scene_reference(struct scene *s, const cJSON *node, const struct scene_moments *when,
+                    struct scene_reference *out, struct error *e);
+/* Whether the names of two probes give files of one name. */
+bool scene_same_file(const char *a, const char *b);
 int scene_output(struct scene *s, const cJSON *node, struct error *e);
 int scene_watches(struct scene *s, const cJSON *node, struct error *e);
 int scene_time(struct scene *s, const cJSON *node, struct error *e);

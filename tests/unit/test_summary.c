@@ -12,11 +12,32 @@
 
 static const char *const array_name[] = {"fluid", "wall"};
 static const uint64_t array_n[] = {10000, 400};
-static const struct summary_error errors[] = {{"fluid.rho", "exact-a", .31, .12, .5, 9.3, 10000},
-                                              {"fluid.p", "exact-a", 1.234e-15, .12, 1e300, 9.3, 1},
-                                              {"fluid.rho", "exact-b", (double)NAN, 1, 1, 1, 0}};
-static const struct summary_probe probes[] = {{"plateau density", 15.41, 16},
-                                              {"hole at the centre", 0.25, (double)NAN}};
+#define ERROR(FIELD, REFERENCE, L1, L1_REL, L2, LINF, N)                                           \
+    {                                                                                              \
+        .field = FIELD, .reference = REFERENCE, .l1 = L1, .l1_rel = L1_REL, .l2 = L2,              \
+        .linf = LINF, .n = N, .time = (double)NAN                                                  \
+    }
+static const struct summary_error errors[] = {
+    ERROR("fluid.rho", "exact-a", .31, .12, .5, 9.3, 10000),
+    ERROR("fluid.p", "exact-a", 1.234e-15, .12, 1e300, 9.3, 1),
+    ERROR("fluid.rho", "exact-b", (double)NAN, 1, 1, 1, 0),
+    ERROR("fluid.rho", "exact-b", 4, 1, 1, 1, 0)};
+static const char *const of[] = {"p", "sum"};
+static const double values[] = {1, .5, 2, (double)NAN};
+static const struct summary_probe probes[] = {
+    {.name = "plateau density", .value = 15.41, .expected = 16},
+    {.name = "hole at the centre", .value = 0.25, .expected = (double)NAN},
+    {.name = "P",
+     .value = 1,
+     .expected = (double)NAN,
+     .file = "probe_P.csv",
+     .rows = 6,
+     .of = of,
+     .n_of = 2,
+     .n_point = 2,
+     .values = values,
+     .course = {.reference = "p.csv", .begin = 0, .end = 2, .l1 = .25, .l2_rel = (double)NAN}}};
+static const struct summary_profile profiles[] = {{"axis", "profile_axis.csv", 202}};
 static const struct summary_pass passes[] = {
     {"rates", 10, 1000000000, 10}, {"state", 1, 0, 10}, {"rates", 2, 1000000000, 10}};
 static const struct summary_plugin plugins[] = {{"demo", "0.1", "/x/demo.so", 0, 1}};
@@ -32,9 +53,11 @@ static struct summary example(void)
                             .steps = 812,
                             .time = 0.6,
                             .error = errors,
-                            .n_error = 3,
+                            .n_error = 4,
                             .probe = probes,
-                            .n_probe = 2,
+                            .n_probe = 3,
+                            .profile = profiles,
+                            .n_profile = 1,
                             .energy_drift = 2.1e-5,
                             .momentum_drift = {1e-17, (double)INFINITY, 0},
                             .angular_drift = {7, 8, 9},
@@ -108,6 +131,16 @@ static void keeps_its_contract(void **state)
     assert_near(number_at(json, "errors/fluid.rho/linf"), 9.3, 0);
     assert_string_equal(at(json, "errors/fluid.rho/reference")->valuestring, "exact-a");
     assert_true(cJSON_IsNull(at(json, "errors/fluid.rho@exact-b/l1")));
+    assert_near(number_at(json, "errors/fluid.rho@exact-b.2/l1"), 4, 0);
+    assert_near(number_at(json, "probes/P/value"), 1, 0);
+    assert_near(number_at(json, "probes/P/rows"), 6, 0);
+    assert_string_equal(at(json, "probes/P/file")->valuestring, "probe_P.csv");
+    assert_near(cJSON_GetArrayItem(at(json, "probes/P/values/p"), 1)->valuedouble, 2, 0);
+    assert_true(cJSON_IsNull(cJSON_GetArrayItem(at(json, "probes/P/values/sum"), 1)));
+    assert_near(number_at(json, "probes/P/reference/l1"), .25, 0);
+    assert_true(cJSON_IsNull(at(json, "probes/P/reference/l2_rel")));
+    assert_null(at(json, "probes/plateau density/file"));
+    assert_near(number_at(json, "profiles/axis/rows"), 202, 0);
     assert_near(number_at(json, "conservation/energy_drift"), 2.1e-5, 0);
     assert_int_equal(cJSON_GetArraySize(at(json, "conservation/momentum_drift")), 2);
     assert_true(cJSON_IsNull(cJSON_GetArrayItem(at(json, "conservation/momentum_drift"), 1)));

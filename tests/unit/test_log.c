@@ -119,58 +119,11 @@ static void shows_progress(void **state)
     progress_end(&p);
 }
 
-/* The rows of before a step stay, with nothing half written behind them, and more may come. */
-static void goes_on(void **state)
-{
-    struct output o;
-    struct log l = {0};
-    struct error e = {0};
-    assert_int_equal(output_claim(&o, scratch_path(state, "out"), &e), 0);
-    const char *path = scratch_path(state, "out/log.csv");
-    assert_int_equal(log_cut(&o, "log.csv", 3, &e), 0); /* there is none */
-    assert_false(scratch_exists(path));
-    static const char *const was[] = {"step,time\n0,0\n2,.2\n3,.3\n4,.4\n",
-                                      "step,time\n0,0\n2,.2\n3,.",
-                                      "step,time\n0,0\n2,.2\n2",
-                                      "step,time\n3,.3\n",
-                                      "step,ti",
-                                      ""};
-    static const char *const is[] = {"step,time\n0,0\n2,.2\n",
-                                     "step,time\n0,0\n2,.2\n",
-                                     "step,time\n0,0\n2,.2\n",
-                                     "step,time\n",
-                                     "",
-                                     ""};
-    for (size_t k = 0; k < sizeof was / sizeof was[0]; k++) {
-        scratch_write(path, was[k], strlen(was[k]));
-        assert_int_equal(log_cut(&o, "log.csv", 3, &e), 0);
-        char *text = scratch_read(path, NULL);
-        assert_string_equal(text, is[k]);
-        free(text);
-    }
-    /* Into an empty file with a header, behind rows without. */
-    for (uint64_t step = 0; step < 2; step++) {
-        const struct log_row row = row_of(step);
-        assert_int_equal(log_append(&l, path, 1, &e), 0);
-        assert_int_equal(log_write(&l, &row, &e), 0);
-        assert_int_equal(log_sync(&l, &e), 0);
-        assert_int_equal(log_close(&l, &e), 0);
-    }
-    char *text = scratch_read(path, NULL);
-    assert_int_equal(strncmp(text, "step,", 5), 0);
-    assert_null(strstr(text + 5, "step,"));
-    assert_non_null(strstr(text, "\n0,"));
-    assert_non_null(strstr(text, "\n1,"));
-    free(text);
-    output_close(&o);
-}
-
 int main(void)
 {
 #define TEST(f) cmocka_unit_test_setup_teardown(f, scratch_setup, scratch_teardown)
     const struct CMUnitTest tests[] = {
         TEST(has_rows),
-        TEST(goes_on),
         TEST(tells_of_a_full_disk),
         TEST(shows_progress),
     };

@@ -80,7 +80,7 @@ whole = {
                 "reference": {"table": "p.csv", "time": "t", "value": "v", "scale": 2}}],
     "profiles": [{"name": "l", "array": "fluid", "of": ["rho", "v.x"], "from": [0, 0], "to": [1, 1], "points": 11},
                  {"name": "b", "array": "fluid", "of": "rho", "along": "r", "bins": 5, "max": 1, "every": 0.1}],
-    "output": {"every": 0.1, "log": {"steps": 10}, "picture": {"field": "rho", "min": 0, "max": 1}},
+    "output": {"every": 0.1, "log": {"steps": 10}, "checkpoint": {"steps": 50, "keep": 3}, "picture": {"field": "rho", "min": 0, "max": 1}},
 }
 for error in validator.iter_errors(whole):
     check(False, f"the whole scene: /{'/'.join(map(str, error.absolute_path))}: {error.message}")
@@ -113,6 +113,7 @@ wrong = [
     ("profiles.1.plain", True), ("profiles.1.bins", 0), ("profiles.1.steps", 3),
     ("probes.1.crossing.shell", 0), ("output.every", 0), ("output.log.every", 1),
     ("output.picture.max", ABSENT), ("output.picture.map", "blue"), ("output.checkpiont", {}),
+    ("output.checkpoint.every", 1), ("output.checkpoint.steps", 0), ("output.checkpoint.keep", 0),
 ]
 for path, value in wrong:
     scene = copy.deepcopy(whole)
@@ -186,6 +187,7 @@ expected = {
     "scene_measure.c:compile_profile:bin_keys": definition("bins"),
     "scene_sample.c:scene_reference:keys": definition("probe", "properties", "reference"),
     "scene_output.c:compile_log:keys": definition("output", "properties", "log"),
+    "scene_output.c:compile_checkpoint:keys": definition("output", "properties", "checkpoint"),
     "scene_output.c:compile_picture:keys": definition("picture"),
     "scene_output.c:scene_output:keys": definition("output"),
     "scene_watch.c::watch_keys": keys("properties", "watch", "anyOf", 1),

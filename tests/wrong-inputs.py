@@ -260,7 +260,16 @@ change('"output":', '"neighbours": {@"manger": "boxes"}, "output":', "/neighbour
        '(did you mean "manager"?)')
 change('"name": "gsph"', '"name": "gsph", "fuse": @"no"', "/scheme/fuse: ")
 change('"every": 0.005', '"every": @0', "/output/every: 0 is not a time interval")
-change('"every": 0.005', '@"checkpoint": {"steps": 10}', "checkpoints are not available in this version")
+for wrong, hint in (('@{"steps": 10, "every": 1}', 'give "steps" or "every", not both'), ("@{}", 'give "steps" or "every"'),
+                    ('{"steps": @0}', "0 is too small"), ('{"every": @-1}', "-1 is not a time interval"),
+                    ('{"steps": 5, "keep": @0}', "0 is too small"), ("@10", "10 is not an object"),
+                    ('{@"step": 5}', 'unknown key "step" (did you mean "steps"?)')):
+    change('"every": 0.005', f'"checkpoint": {wrong}', "/output/checkpoint", hint)
+for words, *parts in ((["--resume", "latest", "--out", "x"], "cannot read the folder x"),
+                      (["--resume", "latest"], "give the scene, or the folder by --out"),
+                      (["--resume", "none.h5"], "cannot read none.h5: No such file"),
+                      (["--resume", "."], "is not a file"), (["--resume", "base.json"], "it is not an HDF5 file")):
+    case(" ".join(words), words, USAGE, *parts, copy=["base.json"])
 change('"output":', '"boundaries": [{"name": "wall"}], "output":', "/boundaries/0", '"wall"')
 
 # -- Particles out of files ----------------------------------------------------------------------

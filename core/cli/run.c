@@ -23,6 +23,7 @@ enum {
     KEY_PATH,
     KEY_DRY,
     KEY_AUDIT,
+    KEY_RESUME,
     KEY_STRICT
 };
 
@@ -32,6 +33,10 @@ static const struct argp_option options[] = {
      "Threads (default: the processors there are); the results are the same", 0},
     {"until", KEY_UNTIL, "T", 0, "End at time T instead of the scene's", 0},
     {"steps", KEY_STEPS, "N", 0, "End after N steps", 0},
+    {"resume", KEY_RESUME, "FILE", 0,
+     "Go on from a checkpoint: a file, or \"latest\", the newest good one in --out; the scene may be left "
+     "out",
+     0},
     {"device", KEY_DEVICE, "cpu", 0, "Where to compute; this version: cpu", 0},
     {"path", KEY_PATH, "WORD", 0,
      "How pair loops run, to compare: best (default), reference (a pair at a time, in double), "
@@ -48,7 +53,7 @@ static const struct argp_option options[] = {
 
 struct arguments {
     struct scene_options scene;
-    const char *out;
+    const char *out, *resume;
     int threads;
     double until;
     uint64_t steps;
@@ -94,6 +99,18 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     switch (key) {
     case ARGP_KEY_INIT:
         state->child_inputs[0] = &a->scene;
+        a->scene.optional = true; /* until it is known whether a checkpoint brings one */
+        return 0;
+    case ARGP_KEY_END:
+        if (!a->scene.path && !a->resume)
+            argp_error(state, "no scene is given");
+        if (a->resume && a->dry)
+            argp_error(state, "--dry-run and --resume do not go together");
+        if (a->resume && strcmp(a->resume, "latest") == 0 && !a->scene.path && !a->out)
+            argp_error(state, "--resume latest: give the scene, or the folder by --out");
+        return 0;
+    case KEY_RESUME:
+        a->resume = arg;
         return 0;
     case KEY_OUT:
         a->out = arg;
@@ -153,11 +170,22 @@ static void default_out(const char *scene, char *out, size_t size)
         snprintf(out, size, "sph-out");
 }
 
-static int run(const struct arguments *a, struct loaded *l, struct error *e)
+/* The folder of results, in fresh memory: --out, or where the checkpoint stands, or by the scene's name. */
+static char *out_folder(const struct arguments *a)
 {
     char folder[512];
-    struct output out;
+    if (a->out)
+        return strdup(a->out);
+    if (a->resume && strcmp(a->resume, "latest") != 0)
+        return resume_folder(a->resume);
     default_out(a->scene.path, folder, sizeof folder);
+    return strdup(folder);
+}
+
+static int run(const struct arguments *a, struct loaded *l, const char *folder,
+               struct resume *resume, struct error *e)
+{
+    struct output out;
     struct loop_options o = {.scene_path = a->scene.path,
                              .until = a->until,
                              .steps = a->steps,
@@ -166,12 +194,13 @@ static int run(const struct arguments *a, struct loaded *l, struct error *e)
                              .audit = a->audit,
                              .threads = a->threads,
                              .path = a->path,
-                             .stop = &interrupted};
+                             .stop = &interrupted,
+                             .resume = resume};
     double end = isnan(a->until) ? l->scene.time.end : a->until;
     if (!(end >= l->scene.time.begin))
         return error_set(e, EXIT_USAGE, "--until %g lies before the scene's begin, %g", end,
                          l->scene.time.begin);
-    if (output_open(&out, a->out ? a->out : folder, e))
+    if (resume ? output_claim(&out, folder, e) : output_open(&out, folder, e))
         return -1;
     signal(SIGINT, interrupt);
     signal(SIGTERM, interrupt);
@@ -180,19 +209,44 @@ static int run(const struct arguments *a, struct loaded *l, struct error *e)
     return status;
 }
 
-static int run_or_show(const struct arguments *a, struct error *e)
+static int run_or_show(const struct arguments *a, const char *folder, struct resume *resume,
+                       struct error *e)
 {
     struct loaded l;
     int status = loaded_make(&l, &a->scene, a->audit, e);
     if (!status && a->verbose)
         l.registry.log_level = SPH_LOG_INFO;
-    if (!status)
+    if (!status && !resume)
         status = plan_fill(&l.plan, e);
-    if (!status && (a->dry || a->verbose))
+    if (!status && !resume && (a->dry || a->verbose))
         plan_print(&l.plan, stdout);
     if (!status && !a->dry)
-        status = run(a, &l, e);
+        status = run(a, &l, folder, resume, e);
     loaded_free(&l);
+    return status;
+}
+
+/* From the beginning, or from a checkpoint, which brings its scene if none is given. */
+static int run_from(struct arguments *a, struct error *e)
+{
+    struct resume resume;
+    char *folder = out_folder(a);
+    if (!folder)
+        return error_memory(e, "a path", 1);
+    int status = 0;
+    if (!a->resume) {
+        status = run_or_show(a, folder, NULL, e);
+    } else if (!(status = resume_open(&resume, a->resume, folder, e))) {
+        if (!a->scene.path) {
+            a->scene.path = resume.origin.scene_path;
+            a->scene.text = resume.origin.scene;
+            a->scene.before = resume.origin.set;
+            a->scene.n_before = resume.origin.n_set;
+        }
+        status = run_or_show(a, folder, &resume, e);
+        resume_close(&resume);
+    }
+    free(folder);
     return status;
 }
 
@@ -202,7 +256,7 @@ int cli_run(int argc, char **argv)
         .options = options,
         .parser = parse,
         .children = children,
-        .args_doc = "SCENE.json",
+        .args_doc = "SCENE.json\n--resume FILE",
         .doc =
             "Runs a scene. The folder of results holds snapshots (snapshot_NNNN.vtkhdf: open them in "
             "ParaView), log.csv and summary.json.\v"
@@ -216,7 +270,7 @@ int cli_run(int argc, char **argv)
     if (a.path == SPH_PATH_REFERENCE || a.path == SPH_PATH_EXTENDED)
         a.scene.precision = precision_name[PRECISION_DOUBLE];
     if (!status)
-        status = run_or_show(&a, &e);
+        status = run_from(&a, &e);
     int code = status ? cli_error(&e) : interrupted ? EXIT_RUN : EXIT_DONE;
     ranks_end();
     return code;

@@ -43,6 +43,8 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         o->path = arg;
         return 0;
     case ARGP_KEY_NO_ARGS:
+        if (o->optional)
+            return 0;
         argp_error(state, "no scene is given");
         return 0;
     default:
@@ -71,9 +73,13 @@ static int load_named(struct loaded *l, const char *plugin, struct error *e)
 /* The scene, and all plugins that it and the command line name. */
 static int load(struct loaded *l, const struct scene_options *o, struct error *e)
 {
-    if (document_load(&l->doc, o->path, e))
+    if (o->text ? document_parse(&l->doc, o->path, o->text, strlen(o->text), e)
+                : document_load(&l->doc, o->path, e))
         return -1;
     l->has_doc = true;
+    for (size_t i = 0; i < o->n_before; i++)
+        if (document_set(&l->doc, o->before[i], e))
+            return -1;
     for (size_t i = 0; i < o->n_set; i++)
         if (document_set(&l->doc, o->set[i], e))
             return -1;

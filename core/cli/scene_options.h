@@ -7,7 +7,11 @@
 #include <argp.h>
 
 struct scene_options {
-    const char *path;     /* of the scene */
+    const char *path;    /* of the scene */
+    bool optional;       /* none need be given ... */
+    const char *text;    /* ... as it may have come with these: its text, NULL: the file's, */
+    char *const *before; /* [n_before] and --set that go before `set` */
+    size_t n_before;
     const char *load[64]; /* --load */
     const char *set[64];  /* --set */
     size_t n_load, n_set;

@@ -182,6 +182,25 @@ static int check_width(const struct box *box, int axis, double margin, const str
     return 0;
 }
 
+int ghosts_store(struct ghosts *g, struct store *s, size_t n, struct error *e)
+{
+    size_t parents = g->n, images = g->n;
+
+    if (store_array(s, "parent", STORE_U32, &g->parent, &parents, 0, e) != 0 ||
+        store_array(s, "image", STORE_U8, &g->image, &images, 0, e) != 0) {
+        return -1;
+    }
+    g->n = parents;
+    g->capacity = s->reading ? parents : g->capacity;
+    for (size_t k = 0; s->reading && k < parents; k++) {
+        if (images != parents || g->parent[k] >= n) {
+            g->n = 0;
+            return store_broken(s, e, "ghost %zu copies nothing", k);
+        }
+    }
+    return 0;
+}
+
 static int ghosts_reserve(struct ghosts *g, size_t n, struct error *e)
 {
     size_t capacity = n + n / 8;

@@ -24,6 +24,8 @@ struct ghosts {
 };
 
 void ghosts_fini(struct ghosts *g);
+/* Into a checkpoint or out of it: of the ghosts of n real particles. */
+int ghosts_store(struct ghosts *g, struct store *s, size_t n, struct error *e);
 
 /* Whether component k of a property (SPH_VECTOR ...) changes sign at a mirror across `axis`. */
 bool sides_turn(uint32_t type, int dim, uint32_t k, int axis);

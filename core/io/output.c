@@ -176,6 +176,24 @@ bool output_is_snapshot(const char *name)
     return digits > 0 && strcmp(name + digits, ".vtkhdf") == 0;
 }
 
+void output_checkpoint_name(char *out, size_t size, unsigned long long step)
+{
+    snprintf(out, size, "checkpoint_%08llu.h5", step);
+}
+
+long long output_checkpoint_step(const char *name)
+{
+    char again[64];
+    if (strncmp(name, "checkpoint_", 11) != 0 || name[11] < '0' || name[11] > '9')
+        return -1;
+    errno = 0;
+    const long long step = strtoll(name + 11, NULL, 10);
+    if (errno)
+        return -1;
+    output_checkpoint_name(again, sizeof again, (unsigned long long)step);
+    return strcmp(name, again) == 0 ? step : -1;
+}
+
 /* Whether the file begins with `mark` (offset < 0: holds it near its beginning). */
 static bool file_has_mark(int folder, const char *name, const char *mark, size_t n, bool anywhere)
 {
@@ -212,7 +230,8 @@ static enum owner file_owner(int folder, const char *name)
     if (fstatat(folder, name, &s, AT_SYMLINK_NOFOLLOW))
         return NOBODY;
     const bool regular = S_ISREG(s.st_mode);
-    if (starts_with(name, ASIDE_PREFIX) || output_is_snapshot(name))
+    if (starts_with(name, ASIDE_PREFIX) || output_is_snapshot(name) ||
+        output_checkpoint_step(name) >= 0)
         return regular ? OURS : FOREIGN;
     if (is_rows(name)) {
         const char *mark = strcmp(name, "log.csv") == 0 ? OUTPUT_LOG_MARK : CSV_MARK;
@@ -249,7 +268,23 @@ static int clear_entry(const struct output *o, int folder, const char *name, boo
     return 0;
 }
 
-int output_clear(const struct output *o, struct error *e)
+/* What a run that goes on leaves alone, though it is of the earlier one. */
+struct kept {
+    bool any;
+    uint64_t snapshots, step;
+};
+
+static bool is_kept(const struct kept *k, const char *name)
+{
+    if (!k->any || starts_with(name, ASIDE_PREFIX) || strcmp(name, "summary.json") == 0)
+        return false;
+    if (output_is_snapshot(name))
+        return strtoull(name + strlen("snapshot_"), NULL, 10) < k->snapshots;
+    const long long step = output_checkpoint_step(name);
+    return step < 0 || (uint64_t)step <= k->step;
+}
+
+static int clear_but(const struct output *o, const struct kept *kept, struct error *e)
 {
     DIR *folder = opendir(o->dir);
     if (!folder)
@@ -261,10 +296,23 @@ int output_clear(const struct output *o, struct error *e)
         const struct dirent *entry;
         rewinddir(folder);
         while (result == 0 && (entry = readdir(folder)))
-            result = clear_entry(o, dirfd(folder), entry->d_name, removing, e);
+            if (!is_kept(kept, entry->d_name))
+                result = clear_entry(o, dirfd(folder), entry->d_name, removing, e);
     }
     closedir(folder);
     return result;
+}
+
+int output_clear(const struct output *o, struct error *e)
+{
+    const struct kept none = {0};
+    return clear_but(o, &none, e);
+}
+
+int output_cut(const struct output *o, uint64_t snapshots, uint64_t step, struct error *e)
+{
+    const struct kept kept = {true, snapshots, step};
+    return clear_but(o, &kept, e);
 }
 
 void output_sweep(const struct output *o)

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 struct output {
     char *dir;
@@ -14,13 +15,16 @@ struct output {
 
 /* Makes the folder (and parents) if need be, claims it (a lock file: two runs never share one) and
  * removes the results of an earlier run there, only if they are ours (snapshot_*.vtkhdf, log.csv,
- * errors.csv, probe_*.csv, profile_*.csv, summary.json and pictures that say that they are ours); other files stay. A log.csv, another
+ * errors.csv, probe_*.csv, profile_*.csv, summary.json, checkpoint_*.h5 and pictures that say that they are ours); other files stay. A log.csv, another
  * of these tables or a summary.json that is not ours is an error: the run would overwrite it. Errors: not a folder, not
  * writable, in use (by which process). */
 int output_open(struct output *o, const char *dir, struct error *e);
 /* The two halves of it: a run that resumes claims and does not clear. */
 int output_claim(struct output *o, const char *dir, struct error *e);
 int output_clear(const struct output *o, struct error *e);
+/* Of the results there, removes what a run that goes on after `step`, with snapshot number `snapshots`, makes
+ * again: later snapshots and checkpoints, the summary, what was being written. */
+int output_cut(const struct output *o, uint64_t snapshots, uint64_t step, struct error *e);
 /* Removes what killed writers left in a claimed folder: files aside that came to no name. */
 void output_sweep(const struct output *o);
 /* Gives the claim back. Nothing on an `o` that was never opened and is zeros. */
@@ -46,6 +50,9 @@ int output_write_path(const char *path, const void *data, size_t n, struct error
 
 /* Whether a file's name is that of a snapshot: "snapshot_", digits, ".vtkhdf". */
 bool output_is_snapshot(const char *name);
+/* The step of a checkpoint by its file's name: "checkpoint_00001200.h5"; -1: it is none. */
+long long output_checkpoint_step(const char *name);
+void output_checkpoint_name(char *out, size_t size, unsigned long long step);
 
 /* In every PNG of ours, so that a later run knows which pictures it may remove. */
 #define OUTPUT_PNG_KEY "Software"

@@ -16,6 +16,7 @@
 #define NEIGHBOURS_NEIGHBOURS_H
 
 #include "base/error.h"
+#include "base/store.h"
 #include <sph/batch.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -126,6 +127,11 @@ static inline bool source_walk_next(const struct group_list *list, struct source
     w->source = list->span[w->span].base + list->step[list->span[w->span].first + w->k++];
     return true;
 }
+
+/* Into a checkpoint or out of it, as it is: of n_dst destinations and n_src sources (SIZE_MAX: not looked at,
+ * since the list is no longer in use). */
+int group_list_store(struct group_list *list, struct store *s, size_t n_dst, size_t n_src,
+                     struct error *e);
 
 void group_list_fini(struct group_list *list);
 size_t group_list_bytes(const struct group_list *list);

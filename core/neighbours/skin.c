@@ -402,3 +402,48 @@ struct skin skin_part(const struct skin *s, size_t first, size_t n)
     part.code += first / BLOCK * codes_of(s);
     return part;
 }
+
+/* -- Into a checkpoint and out of it ----------------------------------------------------------- */
+
+static bool skin_fits(const struct skin *s, size_t bytes, size_t codes, size_t exact)
+{
+    size_t columns = (size_t)s->dim + 1;
+
+    if (s->dim < 0 || s->dim > 3 || bytes != s->n_block * sizeof *s->block ||
+        codes != s->n_block * codes_of(s) || exact != s->n_exact * columns * BLOCK ||
+        (s->n != SIZE_MAX && s->n_block != (s->n + BLOCK - 1) / BLOCK)) {
+        return false;
+    }
+    for (size_t b = 0; b < s->n_block; b++) {
+        if (s->block[b].exact != EXACT_NO && s->block[b].exact >= s->n_exact) {
+            return false;
+        }
+    }
+    return true;
+}
+
+int skin_store(struct skin *s, struct store *store, struct error *e)
+{
+    size_t bytes = s->block ? s->n_block * sizeof *s->block : 0, dim = (size_t)s->dim;
+    size_t codes = s->code ? s->n_block * codes_of(s) : 0;
+    size_t exact = s->exact ? s->n_exact * (dim + 1) * BLOCK : 0;
+
+    if (store_count(store, "dim", &dim, e) != 0 ||
+        store_flags(store, "even", &s->even, 1, e) != 0 || store_count(store, "n", &s->n, e) != 0 ||
+        store_count(store, "n_block", &s->n_block, e) != 0 ||
+        store_count(store, "n_exact", &s->n_exact, e) != 0 ||
+        store_array(store, "block", STORE_U8, &s->block, &bytes, 0, e) != 0 ||
+        store_array(store, "code", STORE_U16, &s->code, &codes, 0, e) != 0 ||
+        store_array(store, "exact", STORE_F64, &s->exact, &exact, 0, e) != 0) {
+        return -1;
+    }
+    if (store->reading) {
+        s->dim = (int)dim;
+        s->block_capacity = s->n_block;
+        s->exact_capacity = s->n_exact;
+        if (!skin_fits(s, bytes, codes, exact)) {
+            return store_broken(store, e, "%s is not what is kept of places", store->group);
+        }
+    }
+    return 0;
+}

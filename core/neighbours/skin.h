@@ -51,6 +51,8 @@ static inline bool skin_holds(struct skin_change all)
 {
     return 2 * all.moved <= all.room;
 }
+/* Into a checkpoint or out of it, as it is. */
+int skin_store(struct skin *s, struct store *store, struct error *e);
 void skin_fini(struct skin *s);
 size_t skin_bytes(const struct skin *s);
 

@@ -11,6 +11,7 @@
 #define PARTICLES_PARTICLES_H
 
 #include "base/error.h"
+#include "base/store.h"
 #include <float.h>
 #include <math.h>
 #include <sph/batch.h>
@@ -146,6 +147,9 @@ int particles_permute(struct particles *p, const uint32_t *order, struct error *
 /* new[i] = old[index[i]] for i < n, in every column; an index may come again, or not at all. Ghosts
  * are lost. */
 int particles_gather(struct particles *p, const uint32_t *index, size_t n, struct error *e);
+/* Into a checkpoint or out of it, every column as it is held, ghosts included; mirrors are not. Reading, the
+ * array has its columns already. */
+int particles_store(struct particles *p, struct store *s, struct error *e);
 /* The column as the ABI hands it over; its mirror likewise, or the column itself if it is held in 4
  * bytes. */
 sph_column particles_column(const struct particles *p, int column);

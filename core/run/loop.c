@@ -111,7 +111,9 @@ static int one_step(struct loop *l, struct error *e)
 static int after_step(struct loop *l, struct error *e)
 {
     struct run *r = &l->run;
-    bool last = finished(l);
+    const bool last = l->ended = finished(l);
+    if (loop_checkpoint_if_due(l, e))
+        return -1;
     bool by_time = r->time >= l->next_log;
     const bool logged = last || is_logged(l, r->step, r->time);
     /* Sums over all particles: where they are written. Rates are looked at in every evaluation. */
@@ -139,10 +141,9 @@ static int after_step(struct loop *l, struct error *e)
     return 0;
 }
 
-static int steps(struct loop *l, struct error *e)
+static int start(struct loop *l, struct error *e)
 {
     struct run *r = &l->run;
-    double begin = omp_get_wtime(), io = r->cost.io;
     r->look = true;
     if (run_passes(r, MOMENT_START, e) || run_passes(r, MOMENT_EVALUATE, e))
         return -1;
@@ -152,9 +153,26 @@ static int steps(struct loop *l, struct error *e)
     l->next_output = 1;
     l->next_log =
         isfinite(l->scene->output.log_every) ? l->begin + l->scene->output.log_every : INFINITY;
-    if (loop_log(l, e) || loop_snapshot(l, e) || measures_take(&l->measures, MEASURES_START, e))
+    l->ended = finished(l);
+    return loop_log(l, e) || loop_snapshot(l, e) || measures_take(&l->measures, MEASURES_START, e)
+               ? -1
+               : 0;
+}
+
+double loop_seconds(const struct loop *l)
+{
+    return omp_get_wtime() - l->loop_begun - (l->run.cost.io - l->loop_io);
+}
+
+/* A checkpoint was taken before its step was looked at. */
+static int steps(struct loop *l, struct error *e)
+{
+    struct run *r = &l->run;
+    l->loop_begun = omp_get_wtime() - r->cost.loop;
+    l->loop_io = r->cost.io;
+    if (l->options->resume ? after_step(l, e) : start(l, e))
         return -1;
-    while (!finished(l))
+    while (!l->ended)
         if (one_step(l, e) || after_step(l, e))
             return -1;
     if (run_settle(r, e))
@@ -168,7 +186,7 @@ static int steps(struct loop *l, struct error *e)
     }
     if (measures_take(&l->measures, MEASURES_END, e))
         return -1;
-    r->cost.loop = omp_get_wtime() - begin - (r->cost.io - io);
+    r->cost.loop = loop_seconds(l);
     return loop_snapshot(l, e);
 }
 
@@ -184,12 +202,19 @@ static int loop_begin(struct loop *l, struct plan *plan, struct error *e)
         return error_memory(e, "the scene's text", s->doc->length);
     if (run_init(&l->run, plan, l->options->threads, l->options->path, l->options->audit, e))
         return -1;
+    l->checkpointed = UINT64_MAX;
+    l->refused = l->options->resume && loop_resume(l, e);
+    if (l->refused)
+        return -1;
     char *path = output_path(l->out, "log.csv");
-    int status = path ? log_open(&l->log, path, plan->dim, e) : error_memory(e, "a path", 1);
+    int status = !path                ? error_memory(e, "a path", 1)
+                 : l->options->resume ? log_append(&l->log, path, plan->dim, e)
+                                      : log_open(&l->log, path, plan->dim, e);
     free(path);
     if (!status)
-        status = measures_open(&l->measures, &l->run, l->out, false, e);
+        status = measures_open(&l->measures, &l->run, l->out, l->options->resume != NULL, e);
     progress_start(&l->progress, l->options->progress, l->begin, l->end);
+    l->progress.started -= omp_get_wtime() - l->started; /* a run that goes on has begun earlier */
     return status;
 }
 
@@ -200,7 +225,7 @@ static void keep_failed(struct loop *l, const struct error *e)
     if ((l->run.step > 0 || (l->run.watch && l->run.watch->failure.happened)) &&
         loop_snapshot(l, &ignored))
         ignored.text[0] = '\0';
-    /* A CHECKPOINT of the failed state belongs here. */
+    /* No checkpoint: the last one is of a good step, and a later one would be taken for it. */
     loop_summarise(l, "failed", e->text, &ignored);
 }
 
@@ -220,7 +245,7 @@ int loop_run(struct plan *plan, const struct output *out, const struct loop_opti
         status = loop_draw(&l, e);
     if (!status)
         status = loop_summarise(&l, o->stop && *o->stop ? "stopped" : "done", NULL, e);
-    else if (l.run.plan)
+    else if (l.run.plan && !l.refused)
         keep_failed(&l, e);
     struct error ignored = {0};
     log_close(&l.log, &ignored);

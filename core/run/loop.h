@@ -3,6 +3,7 @@
 #define RUN_LOOP_H
 
 #include "io/output.h"
+#include "run/resume.h"
 #include "run/run.h"
 
 struct loop_options {
@@ -15,6 +16,7 @@ struct loop_options {
     int threads;
     uint32_t path;            /* SPH_PATH_... */
     const volatile int *stop; /* set by a signal: end after this step */
+    struct resume *resume;    /* a checkpoint to go on from; the plan is not filled; NULL: none */
 };
 
 /* Runs to the end and writes everything. On failure what was written stays good, the last state is kept as a

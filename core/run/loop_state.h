@@ -22,7 +22,12 @@ struct loop {
     double full; /* the last step's dt before it was cut to end on time */
     uint64_t max_steps, snapshots, next_output;
     double next_log;
-    bool momentum_free; /* nothing bounds the domain, so momentum is conserved */
+    double loop_begun, loop_io; /* what cost.loop is measured from: the clock, and cost.io then */
+    bool ended;   /* by what was known after the last step: a signal may come at any time */
+    bool refused; /* nothing was begun: nothing is to be kept of it */
+    uint64_t checkpointed; /* the step of the last checkpoint; UINT64_MAX: none yet */
+    double checkpoints;    /* moments of output.checkpoint.every that have been passed */
+    bool momentum_free;    /* nothing bounds the domain, so momentum is conserved */
     char *picture, *scene_text;
 };
 
@@ -39,9 +44,21 @@ static inline uint64_t particles_total(const struct plan *plan)
     return n;
 }
 
+/* Seconds in the loop so far, what was written aside. */
+double loop_seconds(const struct loop *l);
+
 /* loop_files.c */
 int loop_log(struct loop *l, struct error *e);
 int loop_snapshot(struct loop *l, struct error *e);
+
+/* loop_checkpoint.c. Leaves a checkpoint of the state right after a step, settled or not; nothing if there is
+ * one of this step. Not in the midst of a step. */
+int loop_checkpoint(struct loop *l, struct error *e);
+/* After every step, before anything else is done with it. */
+int loop_checkpoint_if_due(struct loop *l, struct error *e);
+/* Takes the state out of options->resume, into a loop whose run has just been initialised, and takes away what
+ * the output folder holds of later. */
+int loop_resume(struct loop *l, struct error *e);
 
 /* loop_report.c. The picture of the last snapshot, if the scene wants one. */
 int loop_draw(struct loop *l, struct error *e);

@@ -75,6 +75,9 @@ struct run {
 int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool audit,
              struct error *e);
 void run_free(struct run *r);
+/* run_store.c: all that the next step builds on goes into a checkpoint or comes out of it, as it is. Reading:
+ * into a run that has just been initialised. */
+int run_store(struct run *r, struct store *s, struct error *e);
 
 /* lists.c. At the start of an evaluation: sorts, makes ghosts and lists if they are no longer
  * right. In its midst (`within`): only ghosts and lists, since other columns hold results

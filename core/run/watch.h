@@ -51,6 +51,8 @@ struct watch {
 
 int watch_open(struct run *r, struct error *e);
 void watch_close(struct run *r);
+/* watch_store.c: into a checkpoint or out of it; of a watch that is open. */
+int watch_store(struct run *r, struct store *s, struct error *e);
 
 /* Before an evaluation, while places are as the integrator left them. */
 int watch_state(struct run *r, struct error *e);

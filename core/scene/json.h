@@ -86,6 +86,18 @@ const cJSON *json_get(const cJSON *object, const char *key);
  * "unknown key "fil" (did you mean "fill"?)". */
 int json_keys(const struct document *d, const cJSON *object, const char *const *known, size_t n,
               struct error *e);
+/* Members that a comparison passes over: `key` of the root (`in` NULL), or of its member `in`. */
+struct json_skip {
+    const char *in, *key;
+};
+/* A place where two values differ: what stands there; NULL: nothing. */
+struct json_difference {
+    const cJSON *was, *is;
+    bool order; /* the same keys in another order, from here on */
+};
+/* Whether they do, and where first. The order of keys counts: it is that of arrays of particles. */
+bool json_differ(const cJSON *was, const cJSON *is, const struct json_skip *skip, size_t n,
+                 struct json_difference *out);
 /* A value in a few words for messages: 12, "text", an object. Returns out. */
 #define JSON_BRIEF 72
 const char *json_brief(const cJSON *node, char out[JSON_BRIEF]);

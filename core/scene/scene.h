@@ -262,6 +262,12 @@ struct scene {
         double log_every;   /* or every so much time; INFINITY */
         struct {
             bool wanted;
+            uint64_t steps; /* one every so many steps; 0: not so */
+            double every;   /* or every so much time; INFINITY */
+            uint64_t keep;  /* so many stay; default 2 */
+        } checkpoint;
+        struct {
+            bool wanted;
             const char *array, *of;
             double min, max;
             bool range;

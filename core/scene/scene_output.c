@@ -47,6 +47,28 @@ static int compile_log(struct scene *s, const cJSON *node, struct error *e)
     return json_positive(s->doc, node, "every", false, "time interval", &s->output.log_every, e);
 }
 
+static int compile_checkpoint(struct scene *s, const cJSON *node, struct error *e)
+{
+    static const char *const keys[] = {"steps", "every", "keep"};
+    long long steps = 0, keep = 2;
+    if (!node)
+        return 0;
+    if (json_keys(s->doc, node, keys, COUNT(keys), e) < 0)
+        return -1;
+    if (!json_get(node, "steps") == !json_get(node, "every"))
+        return document_fail(s->doc, node, e, "give \"steps\" or \"every\"%s",
+                             json_get(node, "every") ? ", not both" : "");
+    if (json_integer(s->doc, node, "steps", false, 1, 1ll << 52, &steps, e) < 0 ||
+        json_positive(s->doc, node, "every", false, "time interval", &s->output.checkpoint.every,
+                      e) < 0 ||
+        json_integer(s->doc, node, "keep", false, 1, 1ll << 52, &keep, e) < 0)
+        return -1;
+    s->output.checkpoint.wanted = true;
+    s->output.checkpoint.steps = (uint64_t)steps;
+    s->output.checkpoint.keep = (uint64_t)keep;
+    return 0;
+}
+
 static int compile_picture(struct scene *s, const cJSON *node, struct error *e)
 {
     static const char *const keys[] = {"array", "field", "min", "max", "map", "size"};
@@ -83,7 +105,7 @@ int scene_output(struct scene *s, const cJSON *node, struct error *e)
 {
     static const char *const keys[] = {"every", "log", "checkpoint", "picture"};
     s->output.node = node;
-    s->output.every = s->output.log_every = INFINITY;
+    s->output.every = s->output.log_every = s->output.checkpoint.every = INFINITY;
     s->output.log_steps = 1;
     s->output.picture.min = s->output.picture.max = NAN;
     s->output.picture.map = "viridis";
@@ -92,10 +114,8 @@ int scene_output(struct scene *s, const cJSON *node, struct error *e)
     if (json_keys(s->doc, node, keys, COUNT(keys), e) < 0 ||
         json_positive(s->doc, node, "every", false, "time interval", &s->output.every, e) < 0)
         return -1;
-    if (json_get(node, "checkpoint"))
-        return document_fail_key(s->doc, json_get(node, "checkpoint"), e,
-                                 "checkpoints are not available in this version");
-    if (compile_log(s, json_get(node, "log"), e) < 0)
+    if (compile_log(s, json_get(node, "log"), e) < 0 ||
+        compile_checkpoint(s, json_get(node, "checkpoint"), e) < 0)
         return -1;
     return compile_picture(s, json_get(node, "picture"), e);
 }

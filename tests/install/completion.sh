@@ -9,7 +9,7 @@ mkdir "$scratch/bin" "$scratch/here" "$scratch/here/folder" "$scratch/here/resul
 ln -s "$SPH" "$scratch/bin/sph"
 ln -s "$SPH-plugin-check" "$scratch/bin/sph-plugin-check"
 cd "$scratch/here"
-touch tube.json notes.txt 'two words.json' mine.so results/snapshot_0001.vtkhdf results/log.csv
+touch tube.json notes.txt 'two words.json' mine.so results/snapshot_0001.vtkhdf results/checkpoint_00000010.h5 results/log.csv
 
 cat >"$scratch/ask.bash" <<'END_OF_BASH'
 # ask WORD...: what comes of the last word, on one line, sorted. bash hands over "=" as a word.
@@ -75,6 +75,8 @@ is 'magma' render --map m
 has coolwarm render --map =
 is cpu --device ''
 is '' --steps ''
+is latest --resume = la
+is results/checkpoint_00000010.h5 --resume = results/c
 has gsph run --load ''
 is mine.so run --load mi
 is 'results/' run -o re

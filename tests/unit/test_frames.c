@@ -3,8 +3,10 @@
  * a whole number, so that sums are exact in any order. */
 #include "config.h"
 
+#include "io/checkpoint.h"
 #include "rig.h"
 #include "run/run.h"
+#include "scratch.h"
 
 #include "../walk.h"
 
@@ -426,6 +428,61 @@ static void population(void **state)
     end(&m);
 }
 
+/* All columns of two runs, ghosts and what is made anew at each evaluation aside. */
+static void check_same(const struct rig *a, const struct rig *b, unsigned long long step)
+{
+    const struct particles *p = &a->plan.array[0].p, *q = &b->plan.array[0].p;
+    if (p->n != q->n)
+        fail_msg("%zu and %zu particles at step %llu", p->n, q->n, step);
+    for (size_t c = 0; c < p->n_column; c++)
+        for (uint32_t k = 0; k < p->column[c].ncomp; k++) {
+            const struct column *x = &p->column[c], *y = &q->column[c];
+            if (memcmp((char *)x->data + k * x->plane * x->size,
+                       (char *)y->data + k * y->plane * y->size, p->n * x->size) != 0)
+                fail_msg("\"%s\" has other bits at step %llu", x->name, step);
+        }
+}
+
+/* Out of a checkpoint, at any step: the same lists in every frame, through sorts, removals and births. */
+static void checkpoints(void **state)
+{
+    const char *text = SCENE("{}", ALL ",{'insert':'cull','at':'finish'}", "");
+    const char *path = scratch_path(state, "checkpoint_00000000.h5");
+    for (unsigned stop = 1; stop < 70; stop += 4) {
+        struct motion m[2];
+        struct checkpoint file;
+        struct error e = {0};
+        begin(&m[0], text);
+        rig_open(&m[1].rig, &items, "%s", text);
+        if (run_init(&m[1].run, &m[1].rig.plan, 1, SPH_PATH_BEST, false, &e))
+            fail_msg("%s", e.text);
+        for (unsigned n = 0; n < 100; n++) {
+            if (n == stop) {
+                if (checkpoint_create(&file, path, &e) ||
+                    checkpoint_finish(&file, run_store(&m[0].run, &file.store, &e), &e) ||
+                    checkpoint_open(&file, path, &e) || run_store(&m[1].run, &file.store, &e))
+                    fail_msg("%s", e.text);
+                checkpoint_close(&file);
+            }
+            for (int k = 0; k <= (n >= stop); k++) {
+                const size_t all = m[k].rig.plan.array[0].p.n;
+                for (size_t i = n; n % 5 == 2 && i < all; i += 20)
+                    rig_real(&m[k].rig, 0, "marked", 0)[i] = i % 40 == n ? -1 : 1;
+                advance(&m[k]);
+                if (n % 2 && run_passes(&m[k].run, MOMENT_EVALUATE, &e))
+                    fail_msg("%s", e.text);
+            }
+            if (n >= stop)
+                check_same(&m[0].rig, &m[1].rig, n);
+        }
+        assert_int_equal(m[0].run.cost.list_builds, m[1].run.cost.list_builds);
+        assert_int_equal(m[0].run.cost.pairs, m[1].run.cost.pairs);
+        assert_true(m[1].run.cost.created > 8 && m[1].run.cost.sorts > 2);
+        end(&m[0]);
+        end(&m[1]);
+    }
+}
+
 /* Two arrays, one asked for: no other list is kept. */
 static void pairs_not_asked_for(void **state)
 {
@@ -475,6 +532,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(x_moves),
+        cmocka_unit_test_setup_teardown(checkpoints, scratch_setup, scratch_teardown),
         cmocka_unit_test(X_is_written),
         cmocka_unit_test(X_contracts),
         cmocka_unit_test(X_has_a_rate),

@@ -62,6 +62,8 @@ static void clears_its_own(void **state)
         {"photo.png", other_png, sizeof other_png, false},
         {"snapshot_0000.vtkhdf.bak", "x", 1, false},
         {"snapshot_.vtkhdf", "x", 1, false},
+        {"checkpoint_00000010.h5", "x", 1, true},
+        {"checkpoint_123456789.h5", "x", 1, true},
         {"checkpoint_0001.h5", "x", 1, false},
         {"notes.txt", "x", 1, false},
     };

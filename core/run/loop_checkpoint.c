@@ -1,0 +1,173 @@
+/* run/loop_checkpoint.c -- checkpoints of a loop: when one is due, what of the loop is in it, and how a loop goes
+ * on from one. It is taken right after a step, before anything is settled, logged or written of it, and that
+ * is where a loop goes on: so a run with checkpoints, one without, and one that has been resumed are the
+ * same to the last bit. */
+#include "run/loop_state.h"
+#include <math.h>
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* -- What is in it ------------------------------------------------------------------------------ */
+
+static int totals_store(struct totals *t, const char *name, struct store *s, struct error *e)
+{
+    double v[14] = {t->mass,           t->kinetic,
+                    t->internal,       t->potential,
+                    t->momentum[0],    t->momentum[1],
+                    t->momentum[2],    t->angular[0],
+                    t->angular[1],     t->angular[2],
+                    t->momentum_scale, t->angular_scale,
+                    t->has_energy,     0.0};
+    if (store_block(s, name, STORE_F64, v, 14, e))
+        return -1;
+    *t = (struct totals){.mass = v[0],
+                         .kinetic = v[1],
+                         .internal = v[2],
+                         .potential = v[3],
+                         .momentum = {v[4], v[5], v[6]},
+                         .angular = {v[7], v[8], v[9]},
+                         .momentum_scale = v[10],
+                         .angular_scale = v[11],
+                         .has_energy = v[12] > 0.0};
+    return 0;
+}
+
+/* Moments are counted from the beginning; where the scene now asks for others, from this step on. */
+static void count_anew(struct loop *l, double every, double log_every)
+{
+    const double now = l->run.time - l->begin;
+    const double next = l->scene->output.every, log = l->scene->output.log_every;
+    if (isfinite(next) && !(every <= next && every >= next))
+        l->next_output = (uint64_t)floor(now / next) + 1;
+    if (!(log_every <= log && log_every >= log))
+        l->next_log = isfinite(log) ? l->begin + log * (floor(now / log) + 1.0) : INFINITY;
+    /* An end that was a rounding beside a moment of output has become that moment. */
+    const double goal = l->begin + (double)l->next_output * next;
+    if (isfinite(next) && l->run.time < goal && l->run.time > goal - 1e-9 * next &&
+        goal < l->end - 1e-9 * next)
+        l->run.time = goal;
+}
+
+static int loop_store(struct loop *l, struct store *s, struct error *e)
+{
+    double every = l->scene->output.every, log_every = l->scene->output.log_every;
+    double elapsed = omp_get_wtime() - l->started;
+    if (!s->reading)
+        l->run.cost.loop = loop_seconds(l);
+    store_enter(s, "loop", 0);
+    int status =
+        totals_store(&l->first, "first", s, e) || totals_store(&l->last, "last", s, e) ||
+                store_f64(s, "energy_drift", &l->energy_drift, e) ||
+                store_block(s, "momentum_drift", STORE_F64, l->momentum_drift, 3, e) ||
+                store_block(s, "angular_drift", STORE_F64, l->angular_drift, 3, e) ||
+                store_f64(s, "full", &l->full, e) || store_f64(s, "next_log", &l->next_log, e) ||
+                store_u64(s, "next_output", &l->next_output, e) ||
+                store_u64(s, "snapshots", &l->snapshots, e) || store_f64(s, "every", &every, e) ||
+                store_f64(s, "log_every", &log_every, e) || store_f64(s, "wall_s", &elapsed, e)
+            ? -1
+            : 0;
+    store_leave(s);
+    if (!status)
+        status = run_store(&l->run, s, e);
+    if (!status && s->reading) {
+        l->started = omp_get_wtime() - elapsed;
+        count_anew(l, every, log_every);
+    }
+    return status;
+}
+
+/* -- Writing ------------------------------------------------------------------------------------ */
+
+static int write_file(struct loop *l, const char *temporary, struct error *e)
+{
+    struct origin origin;
+    struct checkpoint file;
+    if (origin_make(&origin, l->run.plan, l->run.path, l->options->scene_path, e))
+        return -1;
+    int status = checkpoint_create(&file, temporary, e);
+    if (!status) {
+        status = origin_store(&origin, &file.store, e) || loop_store(l, &file.store, e) ? -1 : 0;
+        status = checkpoint_finish(&file, status, e);
+    }
+    origin_free(&origin);
+    return status;
+}
+
+int loop_checkpoint(struct loop *l, struct error *e)
+{
+    const double begin = omp_get_wtime();
+    char name[64];
+    if (l->checkpointed == l->run.step)
+        return 0;
+    output_checkpoint_name(name, sizeof name, (unsigned long long)l->run.step);
+    char *temporary = output_begin(l->out, name);
+    int status = temporary ? 0 : error_memory(e, "a path", 1);
+    if (!status)
+        status = csv_sync(&l->log.csv, e); /* rows before this step are not written again */
+    if (!status)
+        status = measures_sync(&l->measures, e);
+    if (!status)
+        status = write_file(l, temporary, e);
+    if (!status)
+        status = output_commit(l->out, temporary, name, e);
+    if (!status) {
+        l->checkpointed = l->run.step;
+        checkpoint_prune(l->out, l->scene->output.checkpoint.keep);
+    }
+    free(temporary);
+    l->run.cost.io += omp_get_wtime() - begin;
+    return status;
+}
+
+int loop_checkpoint_if_due(struct loop *l, struct error *e)
+{
+    const struct run *r = &l->run;
+    const uint64_t steps = l->scene->output.checkpoint.steps;
+    const double every = l->scene->output.checkpoint.every;
+    if (!l->scene->output.checkpoint.wanted)
+        return 0;
+    const double moments = isfinite(every) ? floor((r->time - l->begin) / every) : 0.0;
+    const bool due = l->ended || (steps && r->step % steps == 0) || moments > l->checkpoints;
+    l->checkpoints = moments;
+    return due && r->step ? loop_checkpoint(l, e) : 0;
+}
+
+/* -- Going on ----------------------------------------------------------------------------------- */
+
+/* The command line asks for less than there is. */
+static int check_end(const struct loop *l, struct error *e)
+{
+    const struct run *r = &l->run;
+    const char *path = l->options->resume->path;
+    if (r->time > l->end)
+        return error_set(e, EXIT_USAGE, "%s is at t = %.15g, behind the end %.15g", path, r->time,
+                         l->end);
+    if (r->step > l->max_steps)
+        return error_set(e, EXIT_USAGE, "%s is at step %llu, behind the last one, %llu", path,
+                         (unsigned long long)r->step, (unsigned long long)l->max_steps);
+    return 0;
+}
+
+int loop_resume(struct loop *l, struct error *e)
+{
+    struct resume *from = l->options->resume;
+    if (resume_check(from, l->run.plan, l->run.path, e) || loop_store(l, &from->file.store, e) ||
+        check_end(l, e))
+        return -1;
+    const bool here = resume_is_in(from, l->out->dir);
+    const double every = l->scene->output.checkpoint.every;
+    l->checkpoints = isfinite(every) ? floor((l->run.time - l->begin) / every) : 0.0;
+    if (here)
+        l->checkpointed = l->run.step;
+    if (!here)
+        return output_clear(l->out, e);
+    /* Whatever stands there of later is made again. */
+    char *log = output_path(l->out, "log.csv");
+    int status =
+        log ? output_cut(l->out, l->snapshots, l->run.step, e) : error_memory(e, "a path", 1);
+    if (!status)
+        status = csv_cut_from(log, l->run.step, e);
+    free(log);
+    return status;
+}

@@ -11,6 +11,6 @@ const struct integrator integrator_euler = {
         "Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I (1993), section I.7",
     .order = 1,
     .evaluations = 1,
-    .knee = 1.0,
+    .knee = 0.1,
     OPS(euler_op),
 };

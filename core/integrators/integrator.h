@@ -34,7 +34,9 @@ struct integrator {
     const char *name, *doc, *source;
     int order;       /* on smooth problems */
     int evaluations; /* a step */
-    /* The largest time-step number that is of use, relative to that of "kdk". No figures yet: 1. */
+    /* The largest time-step number that is of use over that of "kdk": the least knee over shocks and a stirred
+     * liquid, as `make check-stability` measures it (README). A scheme's own number is for its own integrator;
+     * another one gets it times the ratio of both knees. */
     double knee;
     const struct op *op;
     size_t n_op;

@@ -31,6 +31,6 @@ const struct integrator integrator_pece = {
     .source = "Monaghan (1989), J. Comput. Phys. 82, 1",
     .order = 2,
     .evaluations = 2,
-    .knee = 1.0,
+    .knee = 1.2,
     OPS(pece_op),
 };

@@ -14,7 +14,7 @@ const struct integrator integrator_rk2 = {
         "Hairer, Norsett & Wanner, Solving Ordinary Differential Equations I (1993), table II.1.1",
     .order = 2,
     .evaluations = 2,
-    .knee = 1.0,
+    .knee = 1.2,
     OPS(rk2_op),
 };
 
@@ -41,7 +41,7 @@ const struct integrator integrator_ssp_rk3 = {
     .source = "Shu & Osher (1988), J. Comput. Phys. 77, 439, eq. 2.18",
     .order = 3,
     .evaluations = 3,
-    .knee = 1.0,
+    .knee = 1.6,
     OPS(ssp_rk3_op),
 };
 
@@ -76,6 +76,6 @@ const struct integrator integrator_rk4 = {
     .source = "Kutta (1901), Z. Math. Phys. 46, 435; Hairer, Norsett & Wanner (1993), table II.1.2",
     .order = 4,
     .evaluations = 4,
-    .knee = 1.0,
+    .knee = 2.0,
     OPS(rk4_op),
 };

@@ -16,6 +16,6 @@ const struct integrator integrator_symplectic = {
     .source = "Dominguez et al. (2022), Comput. Part. Mech. 9, 867; density without its factor",
     .order = 2,
     .evaluations = 2,
-    .knee = 1.0,
+    .knee = 1.2,
     OPS(symplectic_op),
 };

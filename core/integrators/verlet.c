@@ -36,7 +36,7 @@ const struct integrator integrator_verlet2 = {
         "Verlet (1967), Phys. Rev. 159, 98; Dominguez et al. (2022), Comput. Part. Mech. 9, 867",
     .order = 2,
     .evaluations = 1,
-    .knee = 1.0,
+    .knee = 0.2,
     OPS(verlet2_op),
     .adapt = verlet2_adapt,
 };

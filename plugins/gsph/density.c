@@ -1,5 +1,5 @@
 /* density.c -- density summation solved together with the smoothing length: h = eta (m / rho(h))^(1/d), by
- * Newton's method from the h of the last evaluation, kept within 0.7 and 1.4 of it a sweep. The particle's own
+ * Newton's method for h^d rho(h) from the h of the last evaluation, kept within 0.7 and 1.4 of it a sweep. The particle's own
  * term is weighted so that a cubic lattice has just its density. */
 #include "gsph.h"
 #include <math.h>
@@ -62,7 +62,9 @@ static sph_status update(const sph_batch *b)
         const double self = m[i] * own * pow(h[i], -d), fitting = m[i] * pow(eta / h[i], d);
         rho[i] += self;
         slope[i] -= d * self / h[i];
-        double next = h[i] + (fitting - rho[i]) / (d * fitting / h[i] + slope[i]);
+        /* Newton's step of h^d rho(h), which rises with h wherever the others stand; that of rho(h) -
+         * fitting turns its sign where many of them are within a thin particle's support. */
+        double next = h[i] + (fitting - rho[i]) / (d * rho[i] / h[i] + slope[i]);
         if (!(next > 0.7 * h[i]))
             next = 0.7 * h[i];
         if (next > 1.4 * h[i])

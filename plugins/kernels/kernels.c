@@ -1,4 +1,4 @@
-/* kernels.c -- the plugin "kernels": B-splines and Wendland functions, as data. */
+/* kernels.c -- the plugin "kernels": B-splines and Wendland functions, as data, and a Gaussian. */
 #include <sph/plugin.h>
 
 #include "kernels.h"
@@ -15,8 +15,8 @@ static sph_status init(const sph_host *host)
         if (status != SPH_OK)
             return status;
     }
-    return SPH_OK;
+    return host->register_item(host, SPH_KIND_KERNEL, &gaussian);
 }
 
-SPH_PLUGIN("kernels", "0.1", "BSD-3-Clause", "smoothing kernels: B-splines and Wendland functions",
-           init, NULL)
+SPH_PLUGIN("kernels", "0.1", "BSD-3-Clause",
+           "smoothing kernels: B-splines, Wendland functions, a Gaussian", init, NULL)

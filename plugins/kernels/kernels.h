@@ -10,5 +10,6 @@
 #define N_WENDLANDS 3
 extern const sph_kernel bspline[N_BSPLINES];
 extern const sph_kernel wendland[N_WENDLANDS];
+extern const sph_kernel gaussian;
 
 #endif

@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
 """The watchdog: seven scenes built to fail, one for each cause (tests/watch). Each is stopped with a sentence
 and a "failure" that name cause, particle, place, pass and step; what they say is compared with what is found
-here from the failed state's snapshot, the log and what the scene has planted. Then: what is counted or off
-goes on, and scenes that are well raise nothing."""
+here from the failed state's snapshot, the log and what the scene has planted; checkpoint_failed.h5 holds
+the same state, and is not gone on from. Then: what is counted or off goes on, and scenes that are well raise
+nothing."""
 import copy
 import json
 import math
 import os
+import resource
 
+import h5py
 import numpy
 
 from scenes import Scenes, Snapshot, changed, example
@@ -46,7 +49,51 @@ def fails(what, scene, cause, *options, said=()):
         expect(f"{what}: says the place", "at x = (" + ", ".join(f"{x:g}" for x in at) + ")" in result.stderr,
                result.stderr)
         expect(f"{what}: says its values", f" m = {state['m'][i]:g};" in result.stderr, result.stderr)
+    failed_state(what, scene, failure, state, result)
     return failure, state, result
+
+
+def text(block):
+    return block[:].tobytes().decode()
+
+
+def columns(group, names):
+    """Those that are held as plain floats, and ids."""
+    found = {}
+    for k, name in enumerate(names):
+        column = group[f"column{k}"]
+        if "low0" not in column and (column["data0"].dtype.kind == "f" or name == "id"):
+            found[name] = numpy.array([column[f"data{c}"][:] for c in range(column["form"][1])])
+    return found
+
+
+def failed_state(what, scene, failure, state, result):
+    """checkpoint_failed.h5 opens, tells the failure, holds the snapshot's numbers; the culprit's too."""
+    path = result.path("checkpoint_failed.h5")
+    if not os.path.exists(path):
+        expect(f"{what}: the failed state", False, os.listdir(result.out))
+        return
+    with h5py.File(path) as file:
+        told = [text(file["failed/cause"]), f'sph: {text(file["failed/reason"])}\n', file["failed/step"][0], file["failed/time"][0]]
+        arrays = [(file[f"array{k}"], text(file[f"array{k}/columns"]).split()) for k in range(len(scene["particles"]))]
+        held = [(columns(group, names), int(group["n"][0])) for group, names in arrays]
+    expect(f"{what}: the file tells the failure",
+           told == [failure.get("cause"), result.stderr, failure.get("step"), state.time], told)
+    for name, (found, n) in zip(state.names, held):
+        expect(f"{what}: {name} is held", n == len(state.of(name, "id")) and {"id", "m", "h"} <= found.keys(), found.keys())
+        order = found["id"][0][:n].argsort(kind="stable")
+        for key in found.keys() & state.column.keys():
+            shown = state.of(name, key)
+            same = numpy.array_equal(found[key][0][:n][order], shown if shown.ndim == 1 else shown[:, 0],
+                                     equal_nan=found[key].dtype.kind == "f")
+            expect(f"{what}: {key} of {name} is the snapshot's", same)
+        if name == failure.get("array"):
+            expect(f"{what}: the culprit is held", (found["id"][0][:n] == failure["particle"]).sum() == 1)
+    done = scenes.command("--resume", path, "-q")
+    expect(f"{what}: is not gone on from", done.returncode == 2 and len(done.stderr.splitlines()) == 1
+           and f"the state of a run that failed ({failure.get('cause')}) at step {failure.get('step')}" in done.stderr
+           and "to look at (h5py, h5ls)" in done.stderr and "no good checkpoint is beside it" in done.stderr,
+           (done.returncode, done.stderr))
 
 
 def where(state, failure):
@@ -161,6 +208,54 @@ result = scenes.good(scene)
 kinetic = [row[result.log()[0].index("kinetic")] for row in result.log()[1]]
 expect("energy: kinetic alone", len(kinetic) > 2 and abs(kinetic[-1] - kinetic[0]) > 1e-9 * kinetic[0], kinetic)
 fails("energy, its scale given", changed(scene, watch={"energy": {"above": 1e-9, "scale": 1}}), "energy")
+
+# -- Checkpoints beside the failed one ----------------------------------------------------------------
+
+scene = changed(scene_of("energy"), output={"checkpoint": {"steps": 4, "keep": 9}})
+path, result = scenes.write(scene, "beside.json"), scenes.run(scene)
+failed, out = result.path("checkpoint_failed.h5"), ("--out", result.out, "-q")
+kept = [f"checkpoint_{step:08d}.h5" for step in (4, 8, 12)]
+
+
+def left():
+    return sorted(name for name in os.listdir(result.out) if name.startswith("checkpoint_") or name.startswith(".sph"))
+
+
+expect("beside: not pruned, nothing aside", left() == [*kept, "checkpoint_failed.h5"], left())
+# Under a checkpoint's name it is still none, and a broken one is not good.
+with open(failed, "rb") as one, open(result.path("checkpoint_00000099.h5"), "wb") as two:
+    two.write(one.read())
+with open(result.path("checkpoint_00000013.h5"), "wb") as two:
+    two.write(b"broken")
+done = scenes.command("--resume", failed, "-q")
+expect("beside: names the newest good one", done.returncode == 2 and len(done.stderr.splitlines()) == 1
+       and done.stderr.endswith(f"the newest good checkpoint there is {result.path(kept[2])}\n"), done.stderr)
+os.remove(result.path("checkpoint_00000013.h5"))
+done = scenes.command("--resume", "latest", path, *out)
+lines = done.stderr.splitlines()
+expect("beside: latest passes it over", done.returncode == 1 and len(lines) == 2 and "checkpoint_00000099.h5 is the state of"
+       in lines[0] and lines[0].endswith("; the one before it is taken") and lines[1] + "\n" == result.stderr, done.stderr)
+expect("beside: it fails again, and is kept again", left() == [*kept, "checkpoint_failed.h5"], left())
+done = scenes.command("--resume", "latest", path, *out, "--steps", "13")
+expect("beside: one that goes on takes it away", done.returncode == 0 and left() == [*kept, "checkpoint_00000013.h5"],
+       (done.stderr, left()))
+done = scenes.command(path, *out)
+expect("beside: there again", done.returncode == 1 and os.path.exists(failed), done.stderr)
+done = scenes.command(path, *out, "--steps", "2")
+expect("beside: one that begins anew takes it away", done.returncode == 0 and left() == ["checkpoint_00000002.h5"],
+       (done.stderr, left()))
+
+# No room for it: the first error is told, alone, and all else is there.
+scene = scene_of("energy")
+result = scenes.run(scene)
+room = (os.path.getsize(result.path("checkpoint_failed.h5")) + os.path.getsize(result.snapshots()[-1])) // 2
+expect("no room: for it, but for others", room > os.path.getsize(result.snapshots()[-1]), room)
+full = os.path.join(scenes.scratch.name, "full")
+done = scenes.command(scenes.write(scene), "--out", full, "-q", "--threads", "1",
+                      preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (room, room)))
+expect("no room: the first error", done.returncode == 1 and done.stderr == result.stderr, done.stderr)
+expect("no room: all but it", sorted(os.listdir(full)) == sorted(set(os.listdir(result.out)) - {"checkpoint_failed.h5"}),
+       os.listdir(full))
 
 # -- Neighbours -------------------------------------------------------------------------------------
 

@@ -231,7 +231,7 @@ static enum owner file_owner(int folder, const char *name)
         return NOBODY;
     const bool regular = S_ISREG(s.st_mode);
     if (starts_with(name, ASIDE_PREFIX) || output_is_snapshot(name) ||
-        output_checkpoint_step(name) >= 0)
+        output_checkpoint_step(name) >= 0 || strcmp(name, OUTPUT_FAILED) == 0)
         return regular ? OURS : FOREIGN;
     if (is_rows(name)) {
         const char *mark = strcmp(name, "log.csv") == 0 ? OUTPUT_LOG_MARK : CSV_MARK;
@@ -276,7 +276,8 @@ struct kept {
 
 static bool is_kept(const struct kept *k, const char *name)
 {
-    if (!k->any || starts_with(name, ASIDE_PREFIX) || strcmp(name, "summary.json") == 0)
+    if (!k->any || starts_with(name, ASIDE_PREFIX) || strcmp(name, "summary.json") == 0 ||
+        strcmp(name, OUTPUT_FAILED) == 0)
         return false;
     if (output_is_snapshot(name))
         return strtoull(name + strlen("snapshot_"), NULL, 10) < k->snapshots;

@@ -23,7 +23,7 @@ int output_open(struct output *o, const char *dir, struct error *e);
 int output_claim(struct output *o, const char *dir, struct error *e);
 int output_clear(const struct output *o, struct error *e);
 /* Of the results there, removes what a run that goes on after `step`, with snapshot number `snapshots`, makes
- * again: later snapshots and checkpoints, the summary, what was being written. */
+ * again: later snapshots and checkpoints, a failed state, the summary, what was being written. */
 int output_cut(const struct output *o, uint64_t snapshots, uint64_t step, struct error *e);
 /* Removes what killed writers left in a claimed folder: files aside that came to no name. */
 void output_sweep(const struct output *o);
@@ -53,6 +53,8 @@ bool output_is_snapshot(const char *name);
 /* The step of a checkpoint by its file's name: "checkpoint_00001200.h5"; -1: it is none. */
 long long output_checkpoint_step(const char *name);
 void output_checkpoint_name(char *out, size_t size, unsigned long long step);
+/* The state in which a run failed: none of those, so neither resumed from nor pruned. */
+#define OUTPUT_FAILED "checkpoint_failed.h5"
 
 /* In every PNG of ours, so that a later run knows which pictures it may remove. */
 #define OUTPUT_PNG_KEY "Software"

@@ -193,7 +193,7 @@ static int steps(struct loop *l, struct error *e)
 static int loop_begin(struct loop *l, struct plan *plan, struct error *e)
 {
     const struct scene *s = plan->scene;
-    l->started = omp_get_wtime();
+    l->loop_begun = l->started = omp_get_wtime();
     l->begin = s->time.begin;
     l->end = isnan(l->options->until) ? s->time.end : l->options->until;
     l->max_steps = l->options->steps < s->time.steps ? l->options->steps : s->time.steps;
@@ -218,14 +218,15 @@ static int loop_begin(struct loop *l, struct plan *plan, struct error *e)
     return status;
 }
 
-/* Keeps the state in which the run failed; its own failure is not worth a second sentence. */
+/* Keeps the state in which the run failed; its own failures are not worth a second sentence. */
 static void keep_failed(struct loop *l, const struct error *e)
 {
     struct error ignored = {0};
-    if ((l->run.step > 0 || (l->run.watch && l->run.watch->failure.happened)) &&
-        loop_snapshot(l, &ignored))
-        ignored.text[0] = '\0';
-    /* No checkpoint: the last one is of a good step, and a later one would be taken for it. */
+    if (l->run.step > 0 || (l->run.watch && l->run.watch->failure.happened)) {
+        loop_snapshot(l, &ignored);
+        loop_checkpoint_failed(l, e->text, &ignored);
+    }
+    ignored = (struct error){0};
     loop_summarise(l, "failed", e->text, &ignored);
 }
 

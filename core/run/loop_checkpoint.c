@@ -3,6 +3,7 @@
  * is where a loop goes on: so a run with checkpoints, one without, and one that has been resumed are the
  * same to the last bit. */
 #include "run/loop_state.h"
+#include "run/watch.h"
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>
@@ -49,7 +50,8 @@ static void count_anew(struct loop *l, double every, double log_every)
         l->run.time = goal;
 }
 
-static int loop_store(struct loop *l, struct store *s, struct error *e)
+/* failed: what may be half made is left out. */
+static int loop_store(struct loop *l, bool failed, struct store *s, struct error *e)
 {
     double every = l->scene->output.every, log_every = l->scene->output.log_every;
     double elapsed = omp_get_wtime() - l->started;
@@ -69,7 +71,7 @@ static int loop_store(struct loop *l, struct store *s, struct error *e)
             : 0;
     store_leave(s);
     if (!status)
-        status = run_store(&l->run, s, e);
+        status = (failed ? run_store_failed : run_store)(&l->run, s, e);
     if (!status && s->reading) {
         l->started = omp_get_wtime() - elapsed;
         count_anew(l, every, log_every);
@@ -79,7 +81,21 @@ static int loop_store(struct loop *l, struct store *s, struct error *e)
 
 /* -- Writing ------------------------------------------------------------------------------------ */
 
-static int write_file(struct loop *l, const char *temporary, struct error *e)
+/* By this a file is known to be of a failure; the watch's words for it stand there where it was the one. */
+static int mark_failed(const struct run *r, const char *reason, struct store *s, struct error *e)
+{
+    const struct failure *f = r->watch && r->watch->failure.happened ? &r->watch->failure : NULL;
+    struct resume_failure q = {.step = r->step, .time = r->time};
+    q.reason = strdup(reason);
+    q.cause = f ? strdup(watch_keys[f->cause]) : NULL;
+    const int status = q.reason && (q.cause || !f) ? resume_failure_store(&q, s, e)
+                                                   : error_memory(e, "a text", strlen(reason));
+    resume_failure_free(&q);
+    return status;
+}
+
+/* reason: of a failure, or NULL. */
+static int write_file(struct loop *l, const char *temporary, const char *reason, struct error *e)
 {
     struct origin origin;
     struct checkpoint file;
@@ -87,7 +103,11 @@ static int write_file(struct loop *l, const char *temporary, struct error *e)
         return -1;
     int status = checkpoint_create(&file, temporary, e);
     if (!status) {
-        status = origin_store(&origin, &file.store, e) || loop_store(l, &file.store, e) ? -1 : 0;
+        status = (reason && mark_failed(&l->run, reason, &file.store, e)) ||
+                         origin_store(&origin, &file.store, e) ||
+                         loop_store(l, reason != NULL, &file.store, e)
+                     ? -1
+                     : 0;
         status = checkpoint_finish(&file, status, e);
     }
     origin_free(&origin);
@@ -108,7 +128,7 @@ int loop_checkpoint(struct loop *l, struct error *e)
     if (!status)
         status = measures_sync(&l->measures, e);
     if (!status)
-        status = write_file(l, temporary, e);
+        status = write_file(l, temporary, NULL, e);
     if (!status)
         status = output_commit(l->out, temporary, name, e);
     if (!status) {
@@ -117,6 +137,18 @@ int loop_checkpoint(struct loop *l, struct error *e)
     }
     free(temporary);
     l->run.cost.io += omp_get_wtime() - begin;
+    return status;
+}
+
+int loop_checkpoint_failed(struct loop *l, const char *reason, struct error *e)
+{
+    char *temporary = output_begin(l->out, OUTPUT_FAILED);
+    int status = temporary ? 0 : error_memory(e, "a path", 1);
+    if (!status)
+        status = write_file(l, temporary, reason, e);
+    if (!status)
+        status = output_commit(l->out, temporary, OUTPUT_FAILED, e);
+    free(temporary);
     return status;
 }
 
@@ -152,8 +184,8 @@ static int check_end(const struct loop *l, struct error *e)
 int loop_resume(struct loop *l, struct error *e)
 {
     struct resume *from = l->options->resume;
-    if (resume_check(from, l->run.plan, l->run.path, e) || loop_store(l, &from->file.store, e) ||
-        check_end(l, e))
+    if (resume_check(from, l->run.plan, l->run.path, e) ||
+        loop_store(l, false, &from->file.store, e) || check_end(l, e))
         return -1;
     const bool here = resume_is_in(from, l->out->dir);
     const double every = l->scene->output.checkpoint.every;

@@ -54,6 +54,8 @@ int loop_snapshot(struct loop *l, struct error *e);
 /* loop_checkpoint.c. Leaves a checkpoint of the state right after a step, settled or not; nothing if there is
  * one of this step. Not in the midst of a step. */
 int loop_checkpoint(struct loop *l, struct error *e);
+/* Leaves the state in which the run failed, in the midst of a step maybe: to be looked at, not gone on from. */
+int loop_checkpoint_failed(struct loop *l, const char *reason, struct error *e);
 /* After every step, before anything else is done with it. */
 int loop_checkpoint_if_due(struct loop *l, struct error *e);
 /* Takes the state out of options->resume, into a loop whose run has just been initialised, and takes away what

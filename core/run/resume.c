@@ -100,10 +100,49 @@ int origin_store(struct origin *o, struct store *s, struct error *e)
     return 0;
 }
 
+/* -- Of a run that failed ----------------------------------------------------------------------- */
+
+bool resume_has_failed(struct store *s)
+{
+    return store_has(s, "failed/step");
+}
+
+int resume_failure_store(struct resume_failure *f, struct store *s, struct error *e)
+{
+    return store_text(s, "failed/cause", &f->cause, e) ||
+                   store_text(s, "failed/reason", &f->reason, e) ||
+                   store_u64(s, "failed/step", &f->step, e) ||
+                   store_f64(s, "failed/time", &f->time, e)
+               ? -1
+               : 0;
+}
+
+void resume_failure_free(struct resume_failure *f)
+{
+    free(f->cause);
+    free(f->reason);
+    *f = (struct resume_failure){0};
+}
+
+static int refuse_failed(struct resume *r, struct error *e)
+{
+    struct resume_failure f = {0};
+    if (resume_failure_store(&f, &r->file.store, e) == 0)
+        error_set(e, EXIT_USAGE,
+                  "%s is the state of a run that failed%s%s%s at step %llu, t = %g, to look at "
+                  "(h5py, h5ls) and not to go on from",
+                  r->path, f.cause ? " (" : "", f.cause ? f.cause : "", f.cause ? ")" : "",
+                  (unsigned long long)f.step, f.time);
+    resume_failure_free(&f);
+    return -1;
+}
+
 /* -- Which one ---------------------------------------------------------------------------------- */
 
-static int open_file(struct resume *r, const char *path, struct error *e)
+/* failed: whether it is refused for being of a failure. */
+static int open_file(struct resume *r, const char *path, bool *failed, struct error *e)
 {
+    *failed = false;
     *r = (struct resume){.path = strdup(path)};
     if (!r->path)
         return error_memory(e, "a path", strlen(path));
@@ -112,16 +151,19 @@ static int open_file(struct resume *r, const char *path, struct error *e)
         *r = (struct resume){0};
         return -1;
     }
-    if (origin_store(&r->origin, &r->file.store, e)) {
+    *failed = resume_has_failed(&r->file.store);
+    if (*failed ? refuse_failed(r, e) : origin_store(&r->origin, &r->file.store, e)) {
         resume_close(r);
         return -1;
     }
     return 0;
 }
 
-static int open_latest(struct resume *r, const char *dir, struct error *e)
+/* aloud: tells of those that are passed over. */
+static int open_latest(struct resume *r, const char *dir, bool aloud, struct error *e)
 {
     long long *step;
+    bool failed;
     const long n = checkpoint_list(dir, &step, e);
     int status = n < 0 ? -1 : 1;
     struct error why = {0};
@@ -131,9 +173,9 @@ static int open_latest(struct resume *r, const char *dir, struct error *e)
         char *path = text_format("%s/%s", dir, name);
         if (!path) {
             status = error_memory(e, "a path", strlen(dir));
-        } else if (open_file(r, path, &why) == 0) {
+        } else if (open_file(r, path, &failed, &why) == 0) {
             status = 0;
-        } else if (k + 1 < n) {
+        } else if (aloud && k + 1 < n) {
             fprintf(stderr, "sph: %s; the one before it is taken\n", why.text);
         }
         free(path);
@@ -146,10 +188,33 @@ static int open_latest(struct resume *r, const char *dir, struct error *e)
     return status;
 }
 
+/* Adds to the refusal of a failed state what may be gone on from instead. */
+static void name_good(const char *file, struct error *e)
+{
+    const struct error said = *e;
+    struct error ignored = {0};
+    struct resume good;
+    char *folder = resume_folder(file);
+    if (folder && open_latest(&good, folder, false, &ignored) == 0) {
+        error_set(e, EXIT_USAGE, "%s; the newest good checkpoint there is %s", said.text,
+                  good.path);
+        resume_close(&good);
+    } else {
+        error_set(e, EXIT_USAGE, "%s; no good checkpoint is beside it", said.text);
+    }
+    free(folder);
+}
+
 int resume_open(struct resume *r, const char *what, const char *dir, struct error *e)
 {
+    bool failed;
     *r = (struct resume){0};
-    return strcmp(what, "latest") == 0 ? open_latest(r, dir, e) : open_file(r, what, e);
+    if (strcmp(what, "latest") == 0)
+        return open_latest(r, dir, true, e);
+    const int status = open_file(r, what, &failed, e);
+    if (failed)
+        name_good(what, e);
+    return status;
 }
 
 void resume_close(struct resume *r)

@@ -25,6 +25,19 @@ struct resume {
     struct origin origin;
 };
 
+/* What the state of a failed run tells of the failure. */
+struct resume_failure {
+    char *cause; /* a key of "watch"; NULL: another failure */
+    char *reason;
+    uint64_t step;
+    double time;
+};
+
+/* Into a checkpoint or out of it: only a failed one has it. */
+bool resume_has_failed(struct store *s);
+int resume_failure_store(struct resume_failure *f, struct store *s, struct error *e);
+void resume_failure_free(struct resume_failure *f);
+
 /* Into a checkpoint or out of it. */
 int origin_store(struct origin *o, struct store *s, struct error *e);
 int origin_make(struct origin *o, const struct plan *plan, uint32_t path, const char *scene_path,

@@ -78,6 +78,9 @@ void run_free(struct run *r);
 /* run_store.c: all that the next step builds on goes into a checkpoint or comes out of it, as it is. Reading:
  * into a run that has just been initialised. */
 int run_store(struct run *r, struct store *s, struct error *e);
+/* Writing: what there is to look at of a run that failed, in the midst of anything: particles and numbers; no
+ * lists, which may be half made, and no plugins' states. */
+int run_store_failed(struct run *r, struct store *s, struct error *e);
 
 /* lists.c. At the start of an evaluation: sorts, makes ghosts and lists if they are no longer
  * right. In its midst (`within`): only ghosts and lists, since other columns hold results

@@ -208,3 +208,17 @@ int run_store(struct run *r, struct store *s, struct error *e)
                ? -1
                : 0;
 }
+
+int run_store_failed(struct run *r, struct store *s, struct error *e)
+{
+    int status = numbers_store(r, s, e) || tables_store(r, s, e) || costs_store(r, s, e) ||
+                         (r->watch && watch_store(r, s, e))
+                     ? -1
+                     : 0;
+    for (size_t a = 0; !status && a < r->plan->n_array; a++) {
+        store_enter(s, "array", a);
+        status = particles_store(&r->plan->array[a].p, s, e);
+        store_leave(s);
+    }
+    return status;
+}

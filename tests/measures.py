@@ -212,6 +212,54 @@ for integrator in ("kdk", "pec"):
         with open(result.path(name), "rb") as a, open(parallel.path(name), "rb") as b:
             expect(f"{name} with two threads", a.read() == b.read(), integrator)
 
+# -- Profiles beside their references ----------------------------------------------------------------
+
+table = {"r": [0.0, 0.1, 0.4, 0.8], "dens": [16.0, 12.0, 2.0, 1.0], "v.r": [0.0, -0.5, -1.0, -0.8]}
+scene = changed(example("noh.json"), compare=[], probes=[], time={"end": 0.1}, profiles=[
+    {"name": "line", "array": "fluid", "of": ["rho", "h", "v.x", "v.r"], "from": [-0.5, 0], "to": [0.3, 0.4], "points": 5,
+     "every": 0.05, "reference": {"exact": "noh"}},
+    {"name": "falls", "array": "fluid", "of": ["v", "rho"], "along": "x", "center": [0, 0.3], "bins": 8, "max": 0.8, "min": -0.4,
+     "reference": {"exact": "noh", "v0": 2}},
+    {"name": "rings", "array": "fluid", "of": ["v.r", "u", "rho"], "along": "r", "center": [0.1, 0], "bins": 5, "max": 1,
+     "reference": {"table": table, "fields": {"rho": "dens"}}},
+    {"name": "along", "array": "fluid", "of": ["v.r", "rho"], "from": [0, 0], "to": [0.8, 0.8], "points": 9,
+     "reference": {"table": table, "along": "r"}}])
+scene["particles"]["fluid"]["fill"]["spacing"] = 0.1
+result = scenes.good(scene)
+bare = scenes.good(changed(scene, profiles=[]))
+expect("references change no bit", all(
+    numpy.array_equal(Snapshot(a)[name], Snapshot(b)[name]) for a, b in zip(bare.snapshots(), result.snapshots())
+    for name in Snapshot(a).column))
+
+
+def noh(x, time, v0=1.0, gamma=5 / 3):
+    """Noh 1987: density, velocity in the plane."""
+    r = math.hypot(*x)
+    if r < (gamma - 1) / 2 * v0 * time:
+        return ((gamma + 1) / (gamma - 1)) ** 2, numpy.zeros(2)
+    return (1 + v0 * time / r, -v0 * numpy.array(x) / r) if r > 0 else (1.0, numpy.zeros(2))
+
+
+line = rows(result, "profile_line.csv")
+expect("columns of a line", list(line[0]) == ["step", "time", "s", "x", "y", "rho", "h", "v.x", "v.r", "sum", "rho.ref",
+                                              "v.x.ref", "v.r.ref"], list(line[0]))
+expect("rows of a line", len({row["time"] for row in line}) == 3, len(line))
+for row in line:
+    rho, v = noh((row["x"], row["y"]), row["time"])
+    r = math.hypot(row["x"], row["y"])
+    near("the exact solution on a line", [row["rho.ref"], row["v.x.ref"], row["v.r.ref"]],
+         [rho, v[0], (v[0] * row["x"] + v[1] * row["y"]) / r if r > 0 else 0], 1e-12)
+for row in rows(result, "profile_falls.csv"):
+    rho, v = noh((row["x"], 0.3), row["time"], 2.0)
+    near("the exact solution in bins", [row["v.ref"], row["rho.ref"]], [math.hypot(*v), rho], 1e-12)
+rings, along = rows(result, "profile_rings.csv"), rows(result, "profile_along.csv")
+expect("columns of rings", list(rings[0])[-2:] == ["n", "rho.ref"] and "v.r.ref" not in rings[0], list(rings[0]))
+expect("columns along", list(along[0])[-2:] == ["sum", "v.r.ref"], list(along[0]))
+near("a table in bins", [row["rho.ref"] for row in rings],
+     [numpy.interp(row["r"], table["r"], table["dens"]) if row["r"] < 0.8 else math.nan for row in rings], 1e-12)
+near("a table on a line", [row["v.r.ref"] for row in along],
+     [numpy.interp(row["s"], table["r"], table["v.r"], right=math.nan) for row in along], 1e-12)
+
 # -- Tables: along r, components, a region, what is beyond the ends ---------------------------------
 
 radii = numpy.linspace(0.0, 0.8, 17)

@@ -127,7 +127,8 @@ noh["compare"], noh["probes"] = example("noh.json")["compare"], example("noh.jso
 noh["compare"] = [{**noh["compare"][0], "every": 0.04}]
 noh["probes"] += [{"name": "along", "array": "fluid", "at": [[0, 0], [0.5, 0.1]], "of": "rho", "steps": 3},
                   {"name": "most", "array": "fluid", "max": "rho", "every": 0.03}]
-noh["profiles"] = [{"name": "shells", "array": "fluid", "of": "rho", "along": "r", "bins": 5, "max": 1, "every": 0.05}]
+noh["profiles"] = [{"name": "shells", "array": "fluid", "of": "rho", "along": "r", "bins": 5, "max": 1, "every": 0.05,
+                    "reference": {"exact": "noh"}}]
 noh["neighbours"] = {"skin": 0.25}
 first = tried("noh", noh, 90, 13)
 

@@ -200,6 +200,7 @@ for new, parts in (
         ('{"array": "fluid", "exact": "riemann", "fields": @"v.r"}', ("/compare/0/fields: the exact solution",))):
     change(COMPARE, new, *parts)
 AT = '"array": "fluid", "of": "rho", "at": [0.5]'
+REFERRED = '{"name": "a", "array": "fluid", "of": "rho", "along": "x", "reference": %s}'
 for new, parts in (
         ('{"name": "a", "array": "fluid", "of": "rho", "at": [@1.5]}'.replace("[@", "@["),
          ("/probes/0/at: the point lies outside of the domain: x = 1.5 is not within 0 to 1",)),
@@ -244,6 +245,17 @@ for new, parts in (
         ('{"name": "a", "array": "fluid", "of": @"rhoo", "along": "x"}', ("/profiles/0/of: ", '(did you mean "rho"?)')),
         ('{"name": "a", "array": "fluid", "of": "rho", "along": "x"}, {"name": @"a", "array": "fluid", "of": "rho", "along": "x"}',
          ("/profiles/1/name: an earlier profile has this name",)),
+        (REFERRED % '@3', ('/profiles/0/reference: a profile\'s reference is an object with "exact" or "table"',)),
+        (REFERRED % '@{"exact": "noh", "table": "a.csv"}', ('/profiles/0/reference: a profile\'s reference is',)),
+        (REFERRED % '@{"exact": "nho"}', ('/profiles/0/reference: ', '(did you mean "noh"?)')),
+        (REFERRED % '{"exact": "noh", "gama": @2}', ("/profiles/0/reference/gama: ",)),
+        (REFERRED % '{"table": {"x": [0, 1], "rho": [1, 1]}, @"along": "x"}', ("/profiles/0/reference/along: unknown key",)),
+        (REFERRED % '{"table": @{"x": [1, 0], "rho": [1, 1]}}', ("/profiles/0/reference/table: ", "does not rise")),
+        (REFERRED % '{"table": {"x": [0, 1], "q": [1, 1]}, "fields": {"rho": @"r"}}', ("/profiles/0/reference/fields/rho: ", 'no column "r"')),
+        (REFERRED % '{"table": {"x": [0, 1], "q": [1, 1]}, "fields": {"u": @"q"}}', ("/profiles/0/reference/fields/u: ", 'the profile is not of "u"')),
+        (REFERRED % '@{"table": {"x": [0, 1], "q": [1, 1]}}', ("/profiles/0/reference: ", 'gives nothing that the profile is "of"')),
+        ('{"name": "a", "array": "fluid", "of": "h", "along": "x", "reference": @{"exact": "noh"}}',
+         ("/profiles/0/reference: ", 'gives nothing that the profile is "of"')),
         ('@3', ("/profiles/0: ",))):
     change('"output":', '"profiles": [%s], "output":' % new, *parts)
 change('"output":', '"profiles": @{}, "output":', "/profiles: give an array of profiles")

@@ -86,6 +86,19 @@ size_t plan_table_along(const struct table *t, enum along along)
     return named < 0 ? 0 : (size_t)named;
 }
 
+/* The table, its rows in order, with the columns that the scene names. */
+static int load_table(struct plan *plan, const struct scene_compare *c, struct table *t,
+                      struct error *e)
+{
+    if (plan_table(t, plan->scene->doc, c->table, e) ||
+        check_rises(plan, t, plan_table_along(t, c->along), c->table, e))
+        return -1;
+    for (size_t k = 0; k < c->n_fields; k++)
+        if (find_column(plan, t, c->columns[k], name_node(c->node, "fields", k), e))
+            return -1;
+    return 0;
+}
+
 static int bind_table(struct plan *plan, size_t i, const struct plan_array *a, struct error *e)
 {
     const struct scene_compare *c = &plan->scene->compare[i];
@@ -93,14 +106,9 @@ static int bind_table(struct plan *plan, size_t i, const struct plan_array *a, s
     struct measured m;
     bool component;
     size_t known = c->n_fields;
-    if (plan_table(t, plan->scene->doc, c->table, e))
+    if (load_table(plan, c, t, e))
         return -1;
     const size_t along = plan_table_along(t, c->along);
-    if (check_rises(plan, t, along, c->table, e))
-        return -1;
-    for (size_t k = 0; k < c->n_fields; k++)
-        if (find_column(plan, t, c->columns[k], name_node(c->node, "fields", k), e))
-            return -1;
     for (size_t k = 0; !c->n_fields && k < t->n_column; k++)
         known += k != along && measured_find(&a->p, t->column[k].name, &m, &component) == 0;
     if (known == 0)
@@ -113,10 +121,10 @@ static int bind_table(struct plan *plan, size_t i, const struct plan_array *a, s
 
 /* -- Comparisons ------------------------------------------------------------------------------- */
 
-static int bind_exact(struct plan *plan, size_t i, struct error *e)
+static int bind_exact(struct plan *plan, const struct scene_compare *c, struct use *u,
+                      struct error *e)
 {
     const struct scene *s = plan->scene;
-    const struct scene_compare *c = &s->compare[i];
     const struct entry *entry = registry_find(plan->registry, KIND_EXACT, c->exact);
     if (!entry)
         return plan_unknown(plan, c->node, KIND_EXACT, c->exact, e);
@@ -125,7 +133,6 @@ static int bind_exact(struct plan *plan, size_t i, struct error *e)
         return document_fail(s->doc, c->node, e,
                              "the exact solution \"%s\" is not for %d dimensions", c->exact,
                              plan->dim);
-    struct use *u = &plan->exact[i];
     if (use_init(u, entry, x->item, x->life, e))
         return -1;
     if (use_set_all(u, s->doc, c->params, e))
@@ -175,7 +182,7 @@ static int bind_compare(struct plan *plan, size_t i, struct error *e)
         return document_fail(plan->scene->doc, c->node, e, "there is no particle array \"%s\"",
                              c->array);
     if (!c->table)
-        return bind_exact(plan, i, e) ? -1 : check_exact_fields(plan, i, a, e);
+        return bind_exact(plan, c, &plan->exact[i], e) ? -1 : check_exact_fields(plan, i, a, e);
     if (bind_table(plan, i, a, e))
         return -1;
     for (size_t k = 0; k < c->n_fields; k++)
@@ -247,6 +254,64 @@ static int bind_probe(struct plan *plan, size_t i, struct error *e)
     return p->reference.table ? bind_reference(plan, i, e) : 0;
 }
 
+/* Of an exact solution components are known, of a table only what is called so. */
+bool plan_profile_gives(const struct plan *plan, size_t i, size_t k, size_t *column)
+{
+    const struct scene_profile *p = &plan->scene->profile[i];
+    const struct scene_compare *c = &p->reference;
+    const char *of = p->sample.of[k], *name = c->n_fields ? NULL : of;
+    if (!c->node)
+        return false;
+    for (size_t q = 0; c->table && q < c->n_fields; q++)
+        if (strcmp(c->fields[q], of) == 0)
+            name = c->columns[q];
+    const int found = c->table && name ? table_find(&plan->profile_table[i], name) : -1;
+    *column = found < 0 ? 0 : (size_t)found;
+    bool given = found >= 0;
+    for (uint32_t q = 0; !c->table && q < plan->profile_exact[i].item->props.count; q++) {
+        const sph_prop *prop = list_at(&plan->profile_exact[i].item->props, q);
+        const size_t n = strlen(prop->name);
+        given = given || ((prop->access & SPH_DST_WRITE) && strncmp(of, prop->name, n) == 0 &&
+                          (of[n] == '\0' || of[n] == '.'));
+    }
+    return given;
+}
+
+static int bind_profile_reference(struct plan *plan, size_t i, struct error *e)
+{
+    const struct scene_profile *p = &plan->scene->profile[i];
+    const struct scene_compare *c = &p->reference;
+    size_t column, known = 0;
+    if (!c->node)
+        return 0;
+    if (c->table ? load_table(plan, c, &plan->profile_table[i], e)
+                 : bind_exact(plan, c, &plan->profile_exact[i], e))
+        return -1;
+    for (size_t k = 0; k < c->n_fields; k++) {
+        bool wanted = false;
+        for (size_t q = 0; q < p->sample.n_of; q++)
+            wanted = wanted || strcmp(p->sample.of[q], c->fields[k]) == 0;
+        if (!wanted)
+            return document_fail(plan->scene->doc, name_node(c->node, "fields", k), e,
+                                 "the profile is not of \"%s\"", c->fields[k]);
+    }
+    const sph_item *item = plan->profile_exact[i].item;
+    for (uint32_t q = 0; item && q < item->props.count; q++) {
+        const sph_prop *prop = list_at(&item->props, q);
+        if (!(prop->access & SPH_DST_WRITE) && strcmp(prop->name, "x") != 0)
+            return document_fail(plan->scene->doc, c->node, e,
+                                 "the exact solution \"%s\" needs \"%s\" of particles; a profile "
+                                 "has places alone",
+                                 c->exact, prop->name);
+    }
+    for (size_t k = 0; k < p->sample.n_of; k++)
+        known += plan_profile_gives(plan, i, k, &column);
+    if (known == 0)
+        return document_fail(plan->scene->doc, c->node, e,
+                             "the reference gives nothing that the profile is \"of\"");
+    return 0;
+}
+
 /* -- All --------------------------------------------------------------------------------------- */
 
 int asked_bind(struct plan *plan, struct error *e)
@@ -255,7 +320,10 @@ int asked_bind(struct plan *plan, struct error *e)
     plan->exact = calloc(s->n_compare + 1, sizeof *plan->exact);
     plan->compare_table = calloc(s->n_compare + 1, sizeof *plan->compare_table);
     plan->probe_table = calloc(s->n_probe + 1, sizeof *plan->probe_table);
-    if (!plan->exact || !plan->compare_table || !plan->probe_table)
+    plan->profile_exact = calloc(s->n_profile + 1, sizeof *plan->profile_exact);
+    plan->profile_table = calloc(s->n_profile + 1, sizeof *plan->profile_table);
+    if (!plan->exact || !plan->compare_table || !plan->probe_table || !plan->profile_exact ||
+        !plan->profile_table)
         return error_memory(e, "the plan", s->n_compare * sizeof *plan->exact);
     for (size_t i = 0; i < s->n_compare; i++)
         if (bind_compare(plan, i, e))
@@ -265,7 +333,8 @@ int asked_bind(struct plan *plan, struct error *e)
             return -1;
     for (size_t i = 0; i < s->n_profile; i++)
         if (check_sample(plan, s->profile[i].node, &s->profile[i].sample, s->profile[i].bins == 0,
-                         e))
+                         e) ||
+            bind_profile_reference(plan, i, e))
             return -1;
     return 0;
 }
@@ -279,6 +348,13 @@ void asked_free(struct plan *plan)
         table_free(&plan->compare_table[i]);
     for (size_t i = 0; plan->probe_table && i < plan->scene->n_probe; i++)
         table_free(&plan->probe_table[i]);
+    for (size_t i = 0; plan->profile_exact && i < plan->scene->n_profile; i++)
+        if (plan->profile_exact[i].item)
+            use_fini(&plan->profile_exact[i], plan->registry);
+    for (size_t i = 0; plan->profile_table && i < plan->scene->n_profile; i++)
+        table_free(&plan->profile_table[i]);
+    free(plan->profile_exact);
+    free(plan->profile_table);
     free(plan->exact);
     free(plan->compare_table);
     free(plan->probe_table);

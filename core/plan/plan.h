@@ -160,7 +160,9 @@ struct plan {
     struct use *exact;                       /* of scene.compare, one each; unset for a table */
     struct table *compare_table;             /* of scene.compare, one each; empty for the exact */
     struct table *probe_table;               /* references of scene.probe, one each */
-    int64_t next_id;                         /* of a particle yet to be made */
+    struct use *profile_exact; /* of scene.profile, one each; unset where there is none */
+    struct table *profile_table;
+    int64_t next_id; /* of a particle yet to be made */
 };
 
 /* Resolves every name, checks every parameter, adds every column. guarded: for the audit. Particles are
@@ -204,6 +206,8 @@ int plan_table(struct table *t, const struct document *d, const cJSON *member, s
 const char *plan_table_source(const cJSON *member);
 /* Index of the column that runs over a coordinate: that of its name, or the first (measures.c). */
 size_t plan_table_along(const struct table *t, enum along along);
+/* Whether the reference of profile i tells of the k-th property that it is of; *column: where in a table. */
+bool plan_profile_gives(const struct plan *plan, size_t i, size_t k, size_t *column);
 /* The plugin's own state as bytes, of a use that has one (state.c). `bytes` is the caller's to free. */
 struct use_state {
     void *bytes;

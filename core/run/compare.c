@@ -97,10 +97,10 @@ static int add_exact(const struct scene_compare *c, const struct plan_array *a, 
     return 0;
 }
 
-static int run_exact(const struct run *r, const struct use *use, const struct plan_array *a,
-                     const sph_column *column, struct error *e)
+int exact_run(const struct run *r, const struct use *use, const sph_column *column, size_t n,
+              struct error *e)
 {
-    sph_batch b = use_batch(r->plan, use, column, use->item->props.count, a->p.n);
+    sph_batch b = use_batch(r->plan, use, column, use->item->props.count, n);
     char why[512];
     b.time = r->time;
     b.step = r->step;
@@ -123,7 +123,7 @@ static int compare_exact(const struct run *r, size_t index, const struct plan_ar
         return error_memory(e, "a comparison", a->p.n);
     int status = exact_columns(a, use->item, column, e);
     if (!status)
-        status = run_exact(r, use, a, column, e);
+        status = exact_run(r, use, column, a->p.n, e);
     for (uint32_t k = 0; k < count; k++) {
         const sph_prop *prop = list_at(&use->item->props, k);
         const int f = particles_find(&a->p, prop->name);

@@ -19,8 +19,8 @@ struct loop_options {
     struct resume *resume;    /* a checkpoint to go on from; the plan is not filled; NULL: none */
 };
 
-/* Runs to the end and writes everything. On failure what was written stays good, the last state is kept as a
- * snapshot, and summary.json tells the reason. */
+/* Runs to the end and writes everything. On failure what was written stays good, the state is kept as a snapshot
+ * and in checkpoint_failed.h5, and summary.json tells the reason. */
 int loop_run(struct plan *plan, const struct output *out, const struct loop_options *o,
              struct error *e);
 

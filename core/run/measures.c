@@ -96,7 +96,8 @@ static void probe_head(const struct measures *m, size_t i, struct csv *to)
 static void profile_head(const struct measures *m, size_t i, struct csv *to)
 {
     const struct scene_profile *p = &m->run->plan->scene->profile[i];
-    char deviation[256];
+    char deviation[256], reference[256];
+    size_t unused;
     csv_name(to, p->bins ? coordinate[p->along] : "s");
     put_names(to, coordinate, p->bins ? 0 : (size_t)m->run->plan->dim);
     for (size_t k = 0; k < p->sample.n_of; k++) {
@@ -106,6 +107,11 @@ static void profile_head(const struct measures *m, size_t i, struct csv *to)
             csv_name(to, deviation);
     }
     csv_name(to, p->bins ? "n" : "sum");
+    for (size_t k = 0; k < p->sample.n_of; k++)
+        if (plan_profile_gives(m->run->plan, i, k, &unused)) {
+            snprintf(reference, sizeof reference, "%s.ref", p->sample.of[k]);
+            csv_name(to, reference);
+        }
 }
 
 typedef void put_head(const struct measures *m, size_t i, struct csv *to);
@@ -311,12 +317,15 @@ static int take_profile(struct measures *m, size_t i, struct error *e)
     struct csv *csv = &m->profile[i].csv;
     const size_t n_of = p->sample.n_of, n = p->bins ? p->bins : p->sample.n_point;
     const size_t width = p->bins ? 2 * n_of + 1 : n_of + 1;
+    size_t unused;
     if (is_written(m, &m->profile[i]))
         return 0;
-    double *value = malloc(n * width * sizeof *value);
+    double *value = malloc(n * (width + n_of) * sizeof *value);
     if (!value)
         return error_memory(e, "a profile", n * width * sizeof *value);
-    if (p->bins ? profile_bins(m->run, p, value, e) : sample_take(m->run, &p->sample, value, e)) {
+    double *reference = value + n * width;
+    if ((p->bins ? profile_bins(m->run, p, value, e) : sample_take(m->run, &p->sample, value, e)) ||
+        (p->reference.node && profile_reference(m->run, i, n, reference, e))) {
         free(value);
         return -1;
     }
@@ -324,12 +333,15 @@ static int take_profile(struct measures *m, size_t i, struct error *e)
         const double *point = p->sample.point + 3 * k;
         begin_row(m, csv);
         if (p->bins) {
-            csv_number(csv, p->min + (p->max - p->min) * (((double)k + 0.5) / (double)n));
+            csv_number(csv, profile_middle(p, k));
         } else {
             csv_number(csv, distance(point, p->sample.point));
             put_numbers(csv, point, (size_t)m->run->plan->dim);
         }
         put_numbers(csv, value + k * width, width);
+        for (size_t q = 0; q < n_of; q++)
+            if (plan_profile_gives(m->run->plan, i, q, &unused))
+                csv_number(csv, reference[k * n_of + q]);
         csv_end_row(csv);
     }
     free(value);

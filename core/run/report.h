@@ -16,4 +16,16 @@ int probe_take(const struct run *r, size_t index, double *out, struct error *e);
  * how many there are. NaN in empty bins. A value at max counts to the last bin. */
 int profile_bins(const struct run *r, const struct scene_profile *p, double *row, struct error *e);
 
+/* The middle of bin k. */
+static inline double profile_middle(const struct scene_profile *p, size_t k)
+{
+    return p->min + (p->max - p->min) * (((double)k + 0.5) / (double)p->bins);
+}
+/* What a profile's reference says now: value[n][n_of] at n places (a bin's: the middle of it on the line through
+ * the center along its coordinate; of r, along x, or y where x is the axis). NaN where it says nothing. */
+int profile_reference(const struct run *r, size_t index, size_t n, double *value, struct error *e);
+/* The fields of an exact solution for a batch of n places, now. */
+int exact_run(const struct run *r, const struct use *use, const sph_column *column, size_t n,
+              struct error *e);
+
 #endif

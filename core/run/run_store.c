@@ -173,6 +173,20 @@ static int use_store(struct run *r, struct use *u, bool needed, struct store *s,
     return status;
 }
 
+/* A scene may compare with others than before. */
+static int exact_store(struct run *r, struct use *u, const char *group, size_t i, struct store *s,
+                       struct error *e)
+{
+    store_enter(s, group, i);
+    char *name = s->reading || !u->item ? NULL : strdup(u->item->name);
+    int status = store_text(s, "name", &name, e);
+    if (!status && name && u->item && strcmp(name, u->item->name) == 0)
+        status = use_store(r, u, false, s, e);
+    free(name);
+    store_leave(s);
+    return status;
+}
+
 static int states_store(struct run *r, struct store *s, struct error *e)
 {
     struct plan *plan = r->plan;
@@ -187,16 +201,10 @@ static int states_store(struct run *r, struct store *s, struct error *e)
         status = use_store(r, &plan->array[a].eos, true, s, e);
         store_leave(s);
     }
-    /* A scene may compare with others than before. */
-    for (size_t i = 0; !status && i < plan->scene->n_compare; i++) {
-        store_enter(s, "exact_use", i);
-        char *name = s->reading || !plan->exact[i].item ? NULL : strdup(plan->exact[i].item->name);
-        status = store_text(s, "name", &name, e);
-        if (!status && name && plan->exact[i].item && strcmp(name, plan->exact[i].item->name) == 0)
-            status = use_store(r, &plan->exact[i], false, s, e);
-        free(name);
-        store_leave(s);
-    }
+    for (size_t i = 0; !status && i < plan->scene->n_compare; i++)
+        status = exact_store(r, &plan->exact[i], "exact_use", i, s, e);
+    for (size_t i = 0; !status && i < plan->scene->n_profile; i++)
+        status = exact_store(r, &plan->profile_exact[i], "profile_use", i, s, e);
     return status;
 }
 

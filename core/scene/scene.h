@@ -180,6 +180,7 @@ struct scene_profile {
     size_t bins;       /* 0: a line */
     double min, max;
     struct scene_moments when;
+    struct scene_compare reference; /* node NULL: none */
 };
 
 /* Signs that a run has gone wrong, and what is done about each: "watch". */

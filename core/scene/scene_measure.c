@@ -36,12 +36,24 @@ static int compile_columns(struct scene *s, const cJSON *fields, struct scene_co
     return 0;
 }
 
+/* Which of the table's columns is which property. */
+static int compile_fields(struct scene *s, const cJSON *node, struct scene_compare *c,
+                          struct error *e)
+{
+    const cJSON *fields = json_get(node, "fields");
+    if (cJSON_IsObject(fields))
+        return compile_columns(s, fields, c, e);
+    if (scene_strings(s, node, "fields", &c->fields, &c->n_fields, e) < 0)
+        return -1;
+    c->columns = c->fields;
+    return 0;
+}
+
 static int compile_table(struct scene *s, const cJSON *node, struct scene_compare *c,
                          struct error *e)
 {
     static const char *const keys[] = {"array", "table",  "along", "axis", "center",
                                        "where", "fields", "every", "at",   "time"};
-    const cJSON *fields = json_get(node, "fields");
     c->table = json_get(node, "table");
     if (json_keys(s->doc, node, keys, COUNT(keys), e) < 0 ||
         scene_along(s, node, &c->along, e) < 0 || scene_about(s, node, &c->about, e) < 0 ||
@@ -55,12 +67,7 @@ static int compile_table(struct scene *s, const cJSON *node, struct scene_compar
         c->when.at = &c->time;
         c->when.n_at = 1;
     }
-    if (cJSON_IsObject(fields))
-        return compile_columns(s, fields, c, e);
-    if (scene_strings(s, node, "fields", &c->fields, &c->n_fields, e) < 0)
-        return -1;
-    c->columns = c->fields;
-    return 0;
+    return compile_fields(s, node, c, e);
 }
 
 int scene_compares(struct scene *s, const cJSON *node, struct error *e)
@@ -229,13 +236,45 @@ static int compile_bins(struct scene *s, const cJSON *node, struct scene_profile
     return 0;
 }
 
+/* Along bins a table runs over the bins' coordinate. */
+static int compile_reference(struct scene *s, const cJSON *node, bool line, struct scene_profile *p,
+                             struct error *e)
+{
+    static const char *const exact_keys[] = {"exact"};
+    static const char *const line_keys[] = {"table", "fields", "along"};
+    static const char *const bin_keys[] = {"table", "fields"};
+    const cJSON *reference = json_get(node, "reference");
+    struct scene_compare *c = &p->reference;
+    if (!reference)
+        return 0;
+    c->node = reference;
+    c->about = p->sample.about;
+    c->along = p->along;
+    c->table = json_get(reference, "table");
+    if (!cJSON_IsObject(reference) || !c->table == !json_get(reference, "exact"))
+        return document_fail(s->doc, reference, e,
+                             "a profile's reference is an object with \"exact\" or \"table\"");
+    if (!c->table) {
+        c->params = document_rest(s->doc, reference, exact_keys, COUNT(exact_keys));
+        return !c->params ? error_memory(e, "a reference", 0)
+                          : json_string(s->doc, reference, "exact", true, &c->exact, e);
+    }
+    if ((line ? json_keys(s->doc, reference, line_keys, COUNT(line_keys), e)
+              : json_keys(s->doc, reference, bin_keys, COUNT(bin_keys), e)) < 0 ||
+        (line && scene_along(s, reference, &c->along, e) < 0))
+        return -1;
+    return compile_fields(s, reference, c, e);
+}
+
 static int compile_profile(struct scene *s, const cJSON *node, struct scene_profile *p,
                            struct error *e)
 {
-    static const char *const line_keys[] = {"name",  "array",  "of",   "from",  "to",   "points",
-                                            "plain", "center", "axis", "every", "steps"};
-    static const char *const bin_keys[] = {"name", "array",  "of",   "along", "bins",  "min",
-                                           "max",  "center", "axis", "where", "every", "steps"};
+    static const char *const line_keys[] = {"name", "array",  "of",    "from",
+                                            "to",   "points", "plain", "center",
+                                            "axis", "every",  "steps", "reference"};
+    static const char *const bin_keys[] = {"name",  "array", "of",       "along", "bins",
+                                           "min",   "max",   "center",   "axis",  "where",
+                                           "every", "steps", "reference"};
     const bool line = json_get(node, "from") || json_get(node, "to");
     p->node = node;
     if (cJSON_IsObject(node) && !line && !json_get(node, "along"))
@@ -247,7 +286,9 @@ static int compile_profile(struct scene *s, const cJSON *node, struct scene_prof
         json_string(s->doc, node, "name", true, &p->name, e) < 0 ||
         scene_sample(s, node, &p->sample, e) < 0 || scene_moments(s, node, false, &p->when, e) < 0)
         return -1;
-    return line ? scene_line(s, node, &p->sample, e) : compile_bins(s, node, p, e);
+    if ((line ? scene_line(s, node, &p->sample, e) : compile_bins(s, node, p, e)) < 0)
+        return -1;
+    return compile_reference(s, node, line, p, e);
 }
 
 int scene_profiles(struct scene *s, const cJSON *node, struct error *e)

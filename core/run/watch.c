@@ -66,6 +66,17 @@ static bool has_rate(const struct plan_array *a, int column)
     return false;
 }
 
+/* An energy that an equation of state makes of the density may be counted from anywhere. */
+static bool is_derived(const struct plan *plan, size_t array, int column)
+{
+    for (size_t i = 0; i < plan->n_pass; i++) {
+        const struct pass *p = &plan->pass[i];
+        if (!p->function && !p->assignment && pass_writes(p, array, column))
+            return true;
+    }
+    return false;
+}
+
 static void add_columns(struct run *r, size_t array)
 {
     const struct plan_array *a = &r->plan->array[array];
@@ -73,7 +84,8 @@ static void add_columns(struct run *r, size_t array)
         const int at = particles_find(&a->p, contract[k].name);
         if (at < 0 || !column_is_real(&a->p.column[at]) || a->p.column[at].ncomp != 1 ||
             r->watch->scene[contract[k].cause].action == WATCH_OFF ||
-            !plan_changes(r->plan, array, at))
+            !plan_changes(r->plan, array, at) ||
+            (contract[k].cause == WATCH_INTERNAL_ENERGY && is_derived(r->plan, array, at)))
             continue;
         r->watch->column[r->watch->n_column++] = (struct watched){.array = array,
                                                                   .column = at,

@@ -212,6 +212,19 @@ for integrator in ("kdk", "pec"):
         with open(result.path(name), "rb") as a, open(parallel.path(name), "rb") as b:
             expect(f"{name} with two threads", a.read() == b.read(), integrator)
 
+# -- Whether somebody looks after each step or not: what is held in floats is the same -----------------
+
+for precision, integrator in itertools.product(("mixed", "single"), ("kdk", "dkd", "verlet2", "rk4")):
+    tube = changed(example("sod.json"), time={"end": 0.2, "steps": 40, "integrator": integrator},
+                   output={"log": {"steps": 1000}}, probes=[], compare=[])
+    states = []
+    for scene in (tube, {**tube, "probes": [{"name": "u", "array": "fluid", "mean": "u", "steps": 1}]},
+                  changed(tube, output={"log": {"steps": 1}})):
+        states.append(Snapshot(scenes.good(scene, "--precision", precision).snapshots()[-1]))
+    for what, state in zip(("probes", "rows of the log"), states[1:]):
+        differ = [name for name in state.column if not numpy.array_equal(states[0][name], state[name], equal_nan=True)]
+        expect(f"{what} change no bit", not differ, f"{precision}, {integrator}: {differ}")
+
 # -- Tables: along r, components, a region, what is beyond the ends ---------------------------------
 
 radii = numpy.linspace(0.0, 0.8, 17)

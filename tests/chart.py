@@ -121,6 +121,7 @@ for row in table:
         "peak_rss_bytes": cost["peak_rss_bytes"], "ns_per_pair": cost["ns_per_pair"],
         "energy_drift": summary["conservation"]["energy_drift"],
         "fluid.p.linf": summary["errors"]["fluid.p"]["linf"],
+        "fluid.p.l2_rel": summary["errors"]["fluid.p"]["l2_rel"],
         "probe.mean density": summary["probes"]["mean density"]["value"],
         "probe.mean density.expected": 0.6, "probe.least u": summary["probes"]["least u"]["value"]}
     for key, value in same.items():

@@ -3,6 +3,7 @@
 #include "chart/chart.h"
 
 #include "base/text.h"
+#include "chart/row.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -123,7 +124,6 @@ static int read_error(struct chart *c, struct error *e)
     const struct document *d = &c->doc;
     const cJSON *node = json_get(d->root, "error");
     const char *of = NULL, *norm = "l1_rel", *path = NULL, *probe = NULL;
-    static const char *const norms[] = {"l1", "l1_rel", "l2", "linf"};
     if (!node)
         return document_fail(d, d->root, e,
                              "the key \"error\" is missing: which number is it? "
@@ -140,11 +140,11 @@ static int read_error(struct chart *c, struct error *e)
         return document_fail_key(d, json_get(node, "norm"), e, "only \"of\" has a norm");
     char hint[128];
     bool known = false;
-    for (size_t i = 0; i < COUNT(norms); i++)
-        known = known || strcmp(norm, norms[i]) == 0;
+    for (size_t i = 0; i < ROW_NORMS; i++)
+        known = known || strcmp(norm, row_norm_name[i]) == 0;
     if (!known)
         return document_fail(d, json_get(node, "norm"), e, "\"%s\" is no norm%s", norm,
-                             text_suggest(hint, sizeof hint, norm, norms, COUNT(norms)));
+                             text_suggest(hint, sizeof hint, norm, row_norm_name, ROW_NORMS));
     struct chart_measure *m = &c->error;
     m->of = copy(of);
     m->norm = of ? copy(norm) : NULL;

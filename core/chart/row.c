@@ -18,6 +18,8 @@ const char *const row_status_name[ROW_STATUSES] = {
     "done",   "unstable", "nan",     "dt",    "rho",     "u",     "escaped",
     "energy", "crowd",    "timeout", "crash", "refused", "failed"};
 
+const char *const row_norm_name[ROW_NORMS] = {"l1", "l1_rel", "l2", "l2_rel", "linf"};
+
 void row_clear(struct row *r)
 {
     for (size_t i = 0; i < r->n_extra; i++)
@@ -134,13 +136,12 @@ static const cJSON *node_at(const cJSON *from, const char *path)
 
 static int put_norms(struct row *r, const cJSON *summary, struct error *e)
 {
-    static const char *const norms[] = {"l1", "l1_rel", "l2", "linf"};
     const cJSON *errors = json_get(summary, "errors"), *field;
-    cJSON_ArrayForEach(field, errors) for (size_t i = 0; i < 4; i++)
+    cJSON_ArrayForEach(field, errors) for (size_t i = 0; i < ROW_NORMS; i++)
     {
         char name[256];
-        snprintf(name, sizeof name, "%s.%s", field->string, norms[i]);
-        if (row_set_extra(r, name, number_at(field, norms[i]), e))
+        snprintf(name, sizeof name, "%s.%s", field->string, row_norm_name[i]);
+        if (row_set_extra(r, name, number_at(field, row_norm_name[i]), e))
             return -1;
     }
     return 0;

@@ -60,11 +60,15 @@ void row_clear(struct row *r);
 double row_extra(const struct row *r, const char *name);
 int row_set_extra(struct row *r, const char *name, double value, struct error *e);
 int row_set_reason(struct row *r, const char *reason, struct error *e);
-/* A measure that pictures know: the numbers above, "error", "bytes" (of all particles). */
+/* A measure that pictures know: the numbers above, and "bytes" (of all particles). */
 double row_measure(const struct row *r, const char *name);
 bool row_is_measure(const char *name);
 /* The names of all measures; returns how many. */
 size_t row_measures(const char *out[ROW_NUMBERS + 1]);
+
+/* The norms of a comparison, as summary.json calls them. */
+enum { ROW_NORMS = 5 };
+extern const char *const row_norm_name[ROW_NORMS];
 
 /* From a run's summary.json: its numbers, norms and probes, and the chart's error. */
 int row_from_summary(const struct chart *c, struct row *r, const cJSON *summary, struct error *e);

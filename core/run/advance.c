@@ -20,6 +20,7 @@ struct line {
     int column;
     uint32_t k;
     bool reads, writes, rate; /* rate: looked at, whether it is a number */
+    bool settles;             /* written by what was left of the step before */
 };
 
 /* to = w base + w_also also + a (r - r0) + a2 r2 of lines; other lines than to and base may be missing
@@ -37,6 +38,7 @@ struct program {
     struct line *line;
     struct action *action;
     size_t n_line, n_action;
+    size_t n_left; /* actions that were left of the step before */
 };
 
 /* -- Its making --------------------------------------------------------------------------------- */
@@ -47,7 +49,7 @@ static int line_of(struct program *g, int column, uint32_t k, bool writes)
     while (i < g->n_line && (g->line[i].column != column || g->line[i].k != k))
         i++;
     if (i == g->n_line)
-        g->line[g->n_line++] = (struct line){column, k, !writes, false, false};
+        g->line[g->n_line++] = (struct line){.column = column, .k = k, .reads = !writes};
     g->line[i].writes = g->line[i].writes || writes;
     return (int)i;
 }
@@ -133,6 +135,16 @@ static void add(struct program *g, const struct op *op, double step, const struc
     case OP_EVALUATE:
         break;
     }
+}
+
+/* What has been added so far ends a step: where other actions follow, it is brought to what the
+ * columns can hold, as it would be if the step had been settled. So no bit depends on whether
+ * somebody looked between. */
+static void end_step(struct program *g)
+{
+    g->n_left = g->n_action;
+    for (size_t i = 0; i < g->n_line; i++)
+        g->line[i].settles = g->line[i].writes;
 }
 
 /* Operations [from, to), none of them an evaluation, over a step of dt. */
@@ -241,6 +253,19 @@ static struct skin_change change_of(const struct program *g, size_t first, size_
     return run_change(g->run, (size_t)(a - g->run->plan->array), first, n, x);
 }
 
+/* Lines that are not held in doubles, through their columns and back. */
+static void settle_chunk(const struct program *g, size_t first, size_t n, double *const *at)
+{
+    for (size_t i = 0; i < g->n_line; i++) {
+        const struct line *l = &g->line[i];
+        const struct column *c = &g->array->p.column[l->column];
+        if (!l->settles || c->size == sizeof(double))
+            continue;
+        column_store(c, l->k, first, n, at[i]);
+        column_load(c, l->k, first, n, at[i]);
+    }
+}
+
 /* On the chunk at `first`; `room` holds a chunk of every line, `at` a pointer to each. */
 static int run_chunk(const struct program *g, size_t first, double **at, double *room,
                      struct skin_change *change)
@@ -258,8 +283,11 @@ static int run_chunk(const struct program *g, size_t first, double **at, double 
         if (!doubles && l->reads)
             column_load(c, l->k, first, n, at[i]);
     }
-    for (size_t i = 0; i < g->n_action; i++)
+    for (size_t i = 0; i < g->n_action; i++) {
+        if (i > 0 && i == g->n_left)
+            settle_chunk(g, first, n, at);
         combine(&g->action[i], at, n);
+    }
     for (size_t i = 0; i < g->n_line; i++) {
         const struct line *l = &g->line[i];
         const struct column *c = &p->column[l->column];
@@ -346,6 +374,7 @@ static int advance(struct run *r, size_t from, size_t to, struct error *e)
         int bad = program_begin(&g, r, a, e);
         if (!bad) {
             add_all(&g, table->n_op - r->left, table->n_op, r->left_dt);
+            end_step(&g);
             add_all(&g, from, to, r->dt);
             bad = g.n_action ? run_program(&g, r->threads, &change, e) : 0;
         }

@@ -36,6 +36,17 @@ static int declared(const struct pass *p, size_t array, int column)
     return pass_reads_source(p, array, column) ? 1 : 0;
 }
 
+/* While the pass runs the core itself corrects the column, chunk by chunk (closing.h): it cannot be
+ * kept from being written. Only in floats; in double nothing is closed, and all is watched. */
+static bool is_closed(const struct run *r, const struct pass *p, size_t array, int column)
+{
+    const struct plan_array *a = &r->plan->array[array];
+    for (size_t q = 0; q < a->n_rate; q++)
+        if (a->rate[q].property == column && a->rate[q].closed == (size_t)(p - r->plan->pass))
+            return true;
+    return false;
+}
+
 static void trap(int signal_number, siginfo_t *info, void *context)
 {
     static const char *const word[] = {"does not declare", "declares only to read",
@@ -125,7 +136,7 @@ void audit_begin(struct run *r, const struct pass *p)
         for (size_t s = 0; s < p->n_src; s++)
             source = source || p->src[s].array == a;
         for (size_t c = 0; c < pa->p.n_column; c++) {
-            int access = declared(p, a, (int)c);
+            int access = is_closed(r, p, a, (int)c) ? 2 : declared(p, a, (int)c);
             bool geometry = (int)c == pa->position || (int)c == pa->smoothing;
             if (geometry && p->shape == SPH_PAIR && (source || a == p->dst.array) && !access)
                 access = 1;

@@ -68,7 +68,7 @@ static void deviate(const struct plan_array *a, const struct column *f, const sp
         d->d2[i] = d->s2[i] = 0.0;
         for (uint32_t c = one ? m->k : 0; c < (one ? m->k + 1 : f->ncomp); c++) {
             const double star = ((const double *)exact->data)[c * exact->plane + i];
-            const double difference = region_value(f, c, i) - star;
+            const double difference = column_get(f, c, i) - star;
             d->d2[i] += difference * difference;
             d->s2[i] += star * star;
         }

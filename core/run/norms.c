@@ -29,8 +29,8 @@ void norms_of(const struct plan_array *a, const struct deviation *d, struct summ
     for (size_t i = 0; i < a->p.n; i++) {
         if (!d->inside[i])
             continue;
-        const double density = rho < 0 ? 1.0 : region_value(&a->p.column[rho], 0, i);
-        const double v = rho < 0 ? 1.0 : region_value(&a->p.column[a->mass], 0, i) / density;
+        const double density = rho < 0 ? 1.0 : column_get(&a->p.column[rho], 0, i);
+        const double v = rho < 0 ? 1.0 : column_get(&a->p.column[a->mass], 0, i) / density;
         volume += v;
         scale += v * sqrt(d->s2[i]);
         scale2 += v * d->s2[i];
@@ -49,7 +49,7 @@ void norms_of(const struct plan_array *a, const struct deviation *d, struct summ
         out->linf = NAN;
     for (int c = 0; c < 3; c++)
         out->linf_at[c] = worst != SIZE_MAX && c < a->p.dim
-                              ? region_value(&a->p.column[a->position], (uint32_t)c, worst)
+                              ? column_get(&a->p.column[a->position], (uint32_t)c, worst)
                               : NAN;
 }
 

@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define SHELLS_MOST 1e7
+
 /* An array's particles, and what is asked of them. */
 struct probed {
     const struct plan_array *a;
@@ -36,20 +38,25 @@ static double crossing(const struct probed *q, struct error *e)
     double far = 0.0;
     for (size_t i = 0; i < particles; i++)
         far = q->inside[i] ? fmax(far, radius(q, i)) : far;
-    size_t n = (size_t)(far / p->shell) + 1;
-    if (n > 10000000) {
-        error_set(e, EXIT_RUN, "probe \"%s\": too many shells", p->name);
+    if (!(far / p->shell < SHELLS_MOST)) {
+        error_set(
+            e, EXIT_RUN,
+            "probe \"%s\": shells of width %g up to a particle at r = %g are too many; at most "
+            "%.0f are possible",
+            p->name, p->shell, far, SHELLS_MOST);
         return NAN;
     }
+    const size_t n = (size_t)(far / p->shell) + 1;
     double *sum = calloc(2 * n, sizeof *sum), *count = sum ? sum + n : NULL, found = NAN;
     if (!sum) {
         error_memory(e, "shells", 2 * n * sizeof *sum);
         return NAN;
     }
     for (size_t i = 0; i < particles; i++) {
-        size_t k = (size_t)(radius(q, i) / p->shell);
-        if (!q->inside[i] || k >= n)
+        const double at = radius(q, i) / p->shell;
+        if (!q->inside[i] || !(at < (double)n))
             continue;
+        const size_t k = (size_t)at;
         sum[k] += value_of(q, i);
         count[k] += 1.0;
     }

@@ -16,7 +16,8 @@ static size_t bin_of(const struct scene_profile *p, int dim, const double x[3])
     return q < (double)p->bins ? (size_t)q : p->bins - 1;
 }
 
-/* One array's part of the sums, or with `mean` of the sums of squares beside them. */
+/* One array's part of the sums; with `squares`, once these are means, of the sums of squares about
+ * them. */
 static void add_array(const struct scene_profile *p, const struct plan_array *a,
                       const struct measured *m, const bool *inside, bool squares, double *row,
                       double *volume)

@@ -10,7 +10,7 @@ int region_select(const struct plan_array *a, const char *where, bool *inside, s
     for (size_t i = 0; i < a->p.n; i++) {
         double at[3] = {0.0, 0.0, 0.0}, v[SCENE_VARIABLES];
         for (int c = 0; c < a->p.dim; c++)
-            at[c] = region_value(&a->p.column[a->position], (uint32_t)c, i);
+            at[c] = column_get(&a->p.column[a->position], (uint32_t)c, i);
         scene_values(at, a->p.dim, 0.0, v);
         inside[i] = !x || expression_at(x, v) != 0.0;
     }

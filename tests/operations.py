@@ -215,4 +215,47 @@ for name, snapshot, shift in (("one", one, 0.0), ("other", other, 0.5)):
     place[name]["x"] = x[order]
 expect("something moved", abs(one["rho"] - 0.625).max() > 0.1 and numpy.ptp(one["v"][:, 0]) > 0.2)
 same("shifted by half a period", place["one"], place["other"], 1e-10)
+
+# The distance to the nearest, beside brute force: in periodic boxes, where some find none within their support.
+def nearest(x, box, most):
+    d = x[:, None] - x[None, :]
+    d -= box * numpy.round(d / box)
+    r = numpy.sqrt((d * d).sum(axis=2))
+    numpy.fill_diagonal(r, numpy.inf)
+    return numpy.minimum(r.min(axis=1), most)
+
+
+for dim, n, h in ((1, 60, 2.0), (2, 12, 1.3), (2, 12, 0.3), (3, 7, 1.3)):
+    scene = {
+        "dimensions": dim,
+        "plugins": ["kernels", "eos", "barotropic", "diagnostics"],
+        "domain": {"min": [0] * dim, "max": [n] * dim, "sides": {side: "periodic" for side in "xyz"[:dim]}},
+        "materials": {"gas": {"eos": {"name": "linear", "c0": 1, "rho0": 1}}},
+        "particles": {
+            "gas": {
+                "material": "gas",
+                "h_over_dx": h,
+                "fill": {"lattice": "square", "spacing": 1, "jitter": 0.4},
+                "fields": {"rho": 1, "v": [f"0.1 * sin({2 * numpy.pi / n} * x)"] + [0] * (dim - 1)},
+            }
+        },
+        "scheme": {
+            "name": "barotropic",
+            "edit": [{"operation": "summation", "function": "nearest", "of": "nearest", "at": "finish"}],
+        },
+        "kernel": "wendland-c2",
+        "time": {"integrator": "kdk", "dt": 0.1, "end": 2},
+        "probes": [{"name": "least", "array": "gas", "min": "nearest"}],
+    }
+    for precision, tolerance in (("double", 1e-13), ("mixed", 1e-6)):
+        what = f"nearest in {dim}D, h = {h} dx, {precision}"
+        result = scenes.good(scene, "--precision", precision)
+        last = result.last()
+        brute = nearest(last["x"][:, :dim], n, 2 * h)
+        alone = int((brute == 2 * h).sum())
+        expect(f"{what}: some alone, some not", (0 < alone < len(brute)) == (h < 1), alone)
+        error = float(numpy.abs(last["nearest"] - brute).max())
+        expect(what, error <= tolerance * n, error)
+        probed = result.summary()["probes"]["least"]["value"]
+        expect(f"{what}, probed", abs(probed - brute.min()) <= tolerance * n, (probed, brute.min()))
 scenes.end()

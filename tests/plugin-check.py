@@ -30,7 +30,7 @@ def expect(what, good, detail=""):
 
 
 # Ours.
-for plugin in ("gsph", "wcsph", "barotropic", "eos", "exact", "forces", "kernels"):
+for plugin in ("gsph", "wcsph", "barotropic", "diagnostics", "eos", "exact", "forces", "kernels"):
     code, out, err = run(plugin)
     expect(plugin, code == 0 and "FAIL" not in out and " 0 failed" in out.splitlines()[-1] and not err, out + err)
 code, out, err = run("kernels", "gsph", "--only", "gsph", "-q")

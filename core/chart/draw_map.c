@@ -70,7 +70,9 @@ int map_lay_out(struct sheet *s, struct error *e)
     sheet_font(s, FONT, false);
     const double cell = fmax(CELL_WIDTH, 14 + widest_label(s, s->q->p->x_axis));
     s->w = fmax(cell, floor(300 / (double)nx)) * (double)nx;
-    s->h = fmax(CELL_HEIGHT, floor(200 / (double)ny)) * (double)ny;
+    /* High enough for what stands upward beside it, too. */
+    const double words = fmax(sheet_width(s, s->q->y_label), sheet_width(s, s->q->c->error.title));
+    s->h = fmax(CELL_HEIGHT, ceil(fmax(200, words) / (double)ny)) * (double)ny;
     s->left = floor(AIR + 24 + widest_label(s, s->q->p->y_axis) + 10);
     s->right = s->left + s->w + 20;
     ticks_make(&s->bar, s->low, s->high, true, 7);

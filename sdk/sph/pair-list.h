@@ -108,6 +108,7 @@ static sph_status SPH_LOOP_NAME(const sph_batch *b)
                     SPH_ROOTS(r2);
                     const R hinv_j = SPH_UNIFORM ? hinv_i : (T)1.0 / h_j;
                     (void)in;
+                    (void)sph_within;
                     (void)rinv;
                     (void)r;
                     (void)hinv_j;

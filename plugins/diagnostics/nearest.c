@@ -37,7 +37,7 @@ static const sph_item item = {
     .dims = SPH_ALL_DIMS,
     .name = "nearest",
     .doc = "distance to the nearest other particle: shows whether particles pair",
-    .source = "",
+    .source = "Dehnen & Aly 2012, doi:10.1111/j.1365-2966.2012.21439.x, section 3",
     .props = SPH_LIST(props),
 };
 

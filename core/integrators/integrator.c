@@ -7,12 +7,12 @@ static const struct integrator *const all[] = {
     &integrator_pec, &integrator_pece,  &integrator_rk2,        &integrator_ssp_rk3,
     &integrator_rk4, &integrator_euler,
 };
-static const char *const names[] = {"kdk",  "dkd", "symplectic", "verlet2", "pec",
-                                    "pece", "rk2", "ssp-rk3",    "rk4",     "euler"};
+
+#define INTEGRATORS (sizeof all / sizeof all[0])
 
 const struct integrator *integrator_find(const char *name)
 {
-    for (size_t i = 0; i < sizeof all / sizeof all[0]; i++)
+    for (size_t i = 0; i < INTEGRATORS; i++)
         if (strcmp(all[i]->name, name) == 0)
             return all[i];
     return NULL;
@@ -20,7 +20,10 @@ const struct integrator *integrator_find(const char *name)
 
 const char *const *integrator_names(size_t *n)
 {
-    *n = sizeof names / sizeof names[0];
+    static const char *names[INTEGRATORS];
+    for (size_t i = 0; i < INTEGRATORS; i++)
+        names[i] = all[i]->name;
+    *n = INTEGRATORS;
     return names;
 }
 

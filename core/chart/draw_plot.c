@@ -165,8 +165,13 @@ static void draw_failed(struct sheet *s)
 static void draw_front(struct sheet *s)
 {
     const struct plot *q = s->q;
-    for (size_t i = 0; i < q->n_front; i++)
-        cairo_line_to(s->cr, plot_x(s, q->x[q->front[i]]), plot_y(s, q->y[q->front[i]]));
+    for (size_t i = 0; i < q->n_front; i++) {
+        /* Between two members nothing is better than the cheaper one: a step. */
+        const double x = plot_x(s, q->x[q->front[i]]);
+        if (i > 0)
+            cairo_line_to(s->cr, x, plot_y(s, q->y[q->front[i - 1]]));
+        cairo_line_to(s->cr, x, plot_y(s, q->y[q->front[i]]));
+    }
     cairo_set_source_rgb(s->cr, 0.8, 0.8, 0.8);
     cairo_set_line_width(s->cr, 9);
     cairo_set_line_cap(s->cr, CAIRO_LINE_CAP_ROUND);

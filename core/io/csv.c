@@ -174,7 +174,8 @@ int csv_cut_from(const char *path, uint64_t step, struct error *e)
         keep += n;
     }
     free(line);
-    int result = (n < 0 && !feof(file)) || ftruncate(fileno(file), keep) ? cannot(e, path, errno) : 0;
+    int result =
+        (n < 0 && !feof(file)) || ftruncate(fileno(file), keep) ? cannot(e, path, errno) : 0;
     fclose(file);
     return result;
 }

@@ -223,7 +223,8 @@ for name, wanted in expected.items():
 
 # The integrators: those of the program, in the schema and in the manual.
 with open(os.path.join(top, "core/integrators/integrator.c"), encoding="utf-8") as file:
-    names = re.findall(r'"([^"]+)"', re.search(r"names\[\] = \{([^}]*)\}", file.read())[1])
+    found = re.findall(r"&integrator_(\w+)", re.search(r"all\[\] = \{([^}]*)\}", file.read())[1])
+names = [name.replace("_", "-") for name in found]
 with open(os.path.join(top, "man/sph-scene.5"), encoding="utf-8") as file:
     page = file.read()
 check(names == definitions["time"]["properties"]["integrator"]["enum"], f"integrators are {names}")

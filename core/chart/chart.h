@@ -48,7 +48,7 @@ struct chart_picture {
 /* Another program's results: a table with an error and measures. */
 struct chart_peer {
     const char *label, *source;
-    struct csv *table; /* NULL until read */
+    struct cells *table; /* NULL until read */
 };
 
 /* Which number of a run is its error. */

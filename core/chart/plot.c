@@ -4,7 +4,7 @@
 #include "base/text.h"
 #include "chart/fit.h"
 #include "io/render_parts.h"
-#include "chart/csv.h"
+#include "io/cells.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -107,15 +107,15 @@ static int add_run(struct plot *q, size_t *first, size_t i, struct error *e)
 
 static int add_peer(struct plot *q, const struct chart_peer *peer, struct error *e)
 {
-    const size_t x = csv_column(peer->table, q->p->x), y = csv_column(peer->table, "error");
+    const size_t x = cells_column(peer->table, q->p->x), y = cells_column(peer->table, "error");
     if (x == (size_t)-1)
         return 0;
     struct plot_series *s = &q->series[q->n_series++];
     snprintf(s->label, sizeof s->label, "%s", peer->label);
     s->peer = peer;
     for (size_t k = 0; k < peer->table->n_row; k++)
-        if (add_point(s, chart_number(csv_cell(peer->table, k, x)),
-                      chart_number(csv_cell(peer->table, k, y)), (double)NAN, e))
+        if (add_point(s, chart_number(cells_at(peer->table, k, x)),
+                      chart_number(cells_at(peer->table, k, y)), (double)NAN, e))
             return -1;
     return 0;
 }

@@ -3,7 +3,7 @@
 
 #include "base/text.h"
 #include "chart/row.h"
-#include "chart/csv.h"
+#include "io/cells.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -169,10 +169,10 @@ int chart_read_pictures(struct chart *c, struct error *e)
 /* -- Peers --------------------------------------------------------------------------------------- */
 
 /* Every cell of a column that we use is a positive number. */
-static int check_column(const struct csv *t, size_t column, const char *path, struct error *e)
+static int check_column(const struct cells *t, size_t column, const char *path, struct error *e)
 {
     for (size_t k = 0; k < t->n_row; k++) {
-        const char *cell = csv_cell(t, k, column);
+        const char *cell = cells_at(t, k, column);
         if (!(chart_number(cell) > 0))
             return error_set(e, EXIT_USAGE, "%s:%zu: %s: \"%s\" is no positive number", path,
                              t->line[k], t->name[column], cell);
@@ -180,17 +180,17 @@ static int check_column(const struct csv *t, size_t column, const char *path, st
     return 0;
 }
 
-static int check_peer(const struct chart *c, const struct csv *t, const char *path,
+static int check_peer(const struct chart *c, const struct cells *t, const char *path,
                       const cJSON *node, struct error *e)
 {
     bool used = c->n_picture == 0;
-    if (csv_column(t, "error") == (size_t)-1)
+    if (cells_column(t, "error") == (size_t)-1)
         return document_fail(&c->doc, node, e, "%s has no column \"error\"", path);
-    if (check_column(t, csv_column(t, "error"), path, e))
+    if (check_column(t, cells_column(t, "error"), path, e))
         return -1;
     for (size_t i = 0; i < c->n_picture; i++) {
         const struct chart_picture *p = &c->picture[i];
-        const size_t column = p->kind == CHART_MAP ? (size_t)-1 : csv_column(t, p->x);
+        const size_t column = p->kind == CHART_MAP ? (size_t)-1 : cells_column(t, p->x);
         if (column == (size_t)-1)
             continue;
         used = true;
@@ -214,10 +214,10 @@ static int read_peer(struct chart *c, const cJSON *node, struct chart_peer *p, s
         json_string(d, node, "source", false, &p->source, e))
         return -1;
     char *path = document_relative(d, file);
-    struct csv *t = calloc(1, sizeof *t);
+    struct cells *t = calloc(1, sizeof *t);
     struct error inner = {0};
     int status = path && t ? 0 : error_memory(e, "a chart", sizeof *t);
-    if (!status && csv_read(t, path, &inner))
+    if (!status && cells_read(t, path, &inner))
         status = document_fail(d, json_get(node, "file"), e, "%s", inner.text);
     if (!status && check_peer(c, t, path, json_get(node, "file"), e))
         status = -1;
@@ -248,7 +248,7 @@ void chart_pictures_free(struct chart *c)
     free(c->picture);
     for (size_t i = 0; i < c->n_peer; i++) {
         if (c->peer[i].table)
-            csv_free(c->peer[i].table);
+            cells_free(c->peer[i].table);
         free(c->peer[i].table);
     }
     free(c->peer);

@@ -2,7 +2,7 @@
 #include "chart/results.h"
 
 #include "base/text.h"
-#include "chart/csv.h"
+#include "io/cells.h"
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -60,10 +60,10 @@ static bool is_fixed(const char *name)
     return strncmp(name, "axis.", 5) == 0;
 }
 
-static int read_row(struct row *r, const struct csv *t, size_t k, struct error *e)
+static int read_row(struct row *r, const struct cells *t, size_t k, struct error *e)
 {
-    const char *status = csv_cell(t, k, csv_column(t, "status"));
-    const char *reason = csv_cell(t, k, csv_column(t, "reason"));
+    const char *status = cells_at(t, k, cells_column(t, "status"));
+    const char *reason = cells_at(t, k, cells_column(t, "reason"));
     r->status = ROW_FAILED;
     for (size_t i = 0; i < ROW_STATUSES; i++)
         if (strcmp(status, row_status_name[i]) == 0)
@@ -72,9 +72,9 @@ static int read_row(struct row *r, const struct csv *t, size_t k, struct error *
     if (*reason && row_set_reason(r, reason, e))
         return -1;
     for (size_t i = 0; i < ROW_NUMBERS; i++)
-        r->number[i] = number(csv_cell(t, k, csv_column(t, row_number_name[i])));
+        r->number[i] = number(cells_at(t, k, cells_column(t, row_number_name[i])));
     for (size_t i = 0; i < t->n_column; i++) {
-        const char *cell = csv_cell(t, k, i);
+        const char *cell = cells_at(t, k, i);
         /* An empty cell of a run that ended is a number that is none (nan). */
         if (!is_fixed(t->name[i]) && (*cell || r->ended) &&
             row_set_extra(r, t->name[i], number(cell), e))
@@ -84,24 +84,24 @@ static int read_row(struct row *r, const struct csv *t, size_t k, struct error *
     return 0;
 }
 
-static bool is_ours(const struct csv *t)
+static bool is_ours(const struct cells *t)
 {
     static const char *const needed[] = {"id", "status", "reason", "error"};
     for (size_t i = 0; i < sizeof needed / sizeof needed[0]; i++)
-        if (csv_column(t, needed[i]) == (size_t)-1)
+        if (cells_column(t, needed[i]) == (size_t)-1)
             return false;
     for (size_t i = 0; i < ROW_NUMBERS; i++)
-        if (csv_column(t, row_number_name[i]) == (size_t)-1)
+        if (cells_column(t, row_number_name[i]) == (size_t)-1)
             return false;
     return true;
 }
 
 /* A row whose run the chart has; what the chart's error needs and the row lacks comes from the run's
  * summary, which is kept. Without it the run is made again. */
-static int take_row(struct results *s, const struct chart *c, const struct csv *t, size_t k,
+static int take_row(struct results *s, const struct chart *c, const struct cells *t, size_t k,
                     struct error *e)
 {
-    const char *id = csv_cell(t, k, csv_column(t, "id"));
+    const char *id = cells_at(t, k, cells_column(t, "id"));
     size_t i = 0;
     while (i < c->n_run && strcmp(c->run[i].id, id) != 0)
         i++;
@@ -133,21 +133,21 @@ static int take_summary(struct row *r, const struct chart *c, const char *dir, c
 
 int results_read(struct results *s, const struct chart *c, const char *dir, struct error *e)
 {
-    struct csv t;
+    struct cells t;
     *s = (struct results){calloc(c->n_run, sizeof *s->row), c->n_run};
     char *path = text_format("%s/" RESULTS_NAME, dir);
     int status = s->row && path ? 0 : error_memory(e, "a chart's results", c->n_run);
     for (size_t i = 0; i < c->n_run && s->row; i++)
         row_clear(&s->row[i]);
     if (!status && access(path, F_OK) == 0) {
-        status = csv_read(&t, path, e);
+        status = cells_read(&t, path, e);
         if (!status && !is_ours(&t))
             status = error_set(
                 e, EXIT_USAGE,
                 "%s is not of a chart and would be overwritten; choose another --out", path);
         for (size_t k = 0; !status && k < t.n_row; k++)
             status = take_row(s, c, &t, k, e);
-        csv_free(&t);
+        cells_free(&t);
     }
     free(path);
     for (size_t i = 0; i < c->n_run && !status; i++)

@@ -180,31 +180,6 @@ int csv_cut_from(const char *path, uint64_t step, struct error *e)
     return result;
 }
 
-size_t csv_split(char *row, char **cell, size_t most)
-{
-    size_t n = 0;
-    char *to = row;
-    while (n < most) {
-        bool quoted = *row == '"';
-        row += quoted;
-        cell[n++] = to;
-        for (; *row && (quoted || (*row != ',' && *row != '\n')); row++) {
-            if (quoted && *row == '"' && row[1] != '"') {
-                quoted = false;
-                continue;
-            }
-            row += quoted && *row == '"';
-            *to++ = *row;
-        }
-        const bool more = *row == ',';
-        row += more;
-        *to++ = '\0';
-        if (!more)
-            break;
-    }
-    return n;
-}
-
 /* Index of a column in a line of names that need no quotes, or -1. */
 static int column_of(const char *head, const char *name)
 {

@@ -48,9 +48,6 @@ int csv_cut_from(const char *path, uint64_t step, struct error *e);
 int csv_read_two(const char *path, const char *const name[2], double *value[2], size_t *n,
                  struct error *e);
 
-/* Cuts a row into its cells, in place, quotes taken off; how many there are, at most `most`. */
-size_t csv_split(char *row, char **cell, size_t most);
-
 /* First cells of every file of ours. */
 #define CSV_MARK "step,time,"
 

@@ -1,9 +1,9 @@
 /* run/measures_restore.c -- a run that goes on from an earlier state has its comparisons with tables for one time
  * behind it: what came of them stands in errors.csv. Reads that file. */
 #include "base/text.h"
+#include "io/cells.h"
 #include "run/measures.h"
 #include "run/report.h"
-#include <errno.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -11,8 +11,8 @@
 /* The columns of errors.csv (measures.c: errors_head). */
 enum { TIME = 1, COMPARE, ARRAY, FIELD, REFERENCE, L1, L1_REL, L2, L2_REL, LINF, N, OUTSIDE, AT };
 
-static int add(struct measured_errors *to, const struct scene_compare *c, char **cell, int dim,
-               struct error *e)
+static int add(struct measured_errors *to, const struct scene_compare *c, char *const *cell,
+               int dim, struct error *e)
 {
     struct summary_error *bigger = realloc(to->error, (to->n + 1) * sizeof *bigger);
     if (!bigger)
@@ -42,18 +42,15 @@ static int add(struct measured_errors *to, const struct scene_compare *c, char *
 int measures_restore(struct measures *m, struct error *e)
 {
     const struct scene *s = m->run->plan->scene;
-    const int dim = m->run->plan->dim;
-    char *line = NULL, *cell[AT + 3];
-    size_t size = 0;
+    const size_t dim = (size_t)m->run->plan->dim;
+    struct cells t;
     int status = 0;
-    FILE *file = m->errors.path ? fopen(m->errors.path, "re") : NULL;
-    if (!file)
-        return m->errors.path
-                   ? error_set(e, EXIT_RUN, "cannot read %s: %s", m->errors.path, strerror(errno))
-                   : 0;
-    while (!status && getline(&line, &size, file) > 0) {
-        if (csv_split(line, cell, (size_t)(AT + dim)) != (size_t)(AT + dim))
-            continue;
+    if (!m->errors.path)
+        return 0;
+    if (cells_read(&t, m->errors.path, e))
+        return -1;
+    for (size_t row = 0; !status && t.n_column == AT + dim && row < t.n_row; row++) {
+        char *const *cell = t.cell + row * t.n_column;
         char *end;
         const size_t i = strtoul(cell[COMPARE], &end, 10);
         const struct scene_compare *c = i < s->n_compare && !*end ? &s->compare[i] : NULL;
@@ -61,9 +58,8 @@ int measures_restore(struct measures *m, struct error *e)
         if (c && !isnan(c->time) && m->compare[i].next_at > 0 &&
             strcmp(cell[ARRAY], c->array) == 0 &&
             strcmp(cell[REFERENCE], plan_table_source(c->table)) == 0)
-            status = add(&m->errors_of[i], c, cell, dim, e);
+            status = add(&m->errors_of[i], c, cell, (int)dim, e);
     }
-    free(line);
-    fclose(file);
+    cells_free(&t);
     return status;
 }

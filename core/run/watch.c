@@ -58,7 +58,7 @@ static long count_column(const struct run *r, const struct column *c, uint32_t k
 
 /* -- Beginning ---------------------------------------------------------------------------------- */
 
-static bool has_rate(const struct plan_array *a, int column)
+bool watch_has_rate(const struct plan_array *a, int column)
 {
     for (size_t q = 0; q < a->n_rate; q++)
         if (a->rate[q].property == column)
@@ -87,11 +87,12 @@ static void add_columns(struct run *r, size_t array)
             !plan_changes(r->plan, array, at) ||
             (contract[k].cause == WATCH_INTERNAL_ENERGY && is_derived(r->plan, array, at)))
             continue;
-        r->watch->column[r->watch->n_column++] = (struct watched){.array = array,
-                                                                  .column = at,
-                                                                  .cause = contract[k].cause,
-                                                                  .least = contract[k].least,
-                                                                  .integrated = has_rate(a, at)};
+        r->watch->column[r->watch->n_column++] =
+            (struct watched){.array = array,
+                             .column = at,
+                             .cause = contract[k].cause,
+                             .least = contract[k].least,
+                             .integrated = watch_has_rate(a, at)};
     }
 }
 
@@ -165,7 +166,7 @@ static void set_bounds(struct run *r)
 /* -- What was found ----------------------------------------------------------------------------- */
 
 /* True: it is counted, and the run goes on. */
-static bool counted(struct run *r, const struct sign *s, uint64_t n)
+bool watch_counted(struct run *r, const struct sign *s, uint64_t n)
 {
     struct watch *w = r->watch;
     if (w->scene[s->cause].action != WATCH_COUNT)
@@ -188,13 +189,13 @@ void watch_step(struct run *r)
         }
 }
 
-static long long id_of(const struct plan_array *a, size_t i)
+long long watch_id(const struct plan_array *a, size_t i)
 {
     return (long long)((const int64_t *)a->p.column[a->id].data)[i];
 }
 
 /* Who made it, in a sentence. */
-static const char *made_by(char *text, size_t size, const char *by)
+const char *watch_made_by(char *text, size_t size, const char *by)
 {
     if (strcmp(by, WATCH_SCENE) == 0)
         snprintf(text, size, "in the initial state");
@@ -206,11 +207,11 @@ static const char *made_by(char *text, size_t size, const char *by)
 }
 
 /* The same of a column; what the integrator made it of is told as well. */
-static const char *column_made_by(char *text, size_t size, const struct run *r, size_t array,
-                                  int column, const char *by)
+const char *watch_column_made_by(char *text, size_t size, const struct run *r, size_t array,
+                                 int column, const char *by)
 {
     const struct plan_array *a = &r->plan->array[array];
-    made_by(text, size, by);
+    watch_made_by(text, size, by);
     const size_t used = strlen(text);
     for (size_t q = 0; strcmp(by, WATCH_INTEGRATOR) == 0 && q < a->n_rate; q++)
         if (a->rate[q].property == column)
@@ -235,11 +236,11 @@ static int look_at(struct run *r, const struct watched *k, double least, const c
             s.particle = i;
         }
     char who[320];
-    column_made_by(who, sizeof who, r, k->array, k->column, by);
-    return counted(r, &s, (uint64_t)bad)
+    watch_column_made_by(who, sizeof who, r, k->array, k->column, by);
+    return watch_counted(r, &s, (uint64_t)bad)
                ? 0
                : watch_fail(r, &s, e, "%s of particle %lld of \"%s\" became %g %s,", c->name,
-                            id_of(a, s.particle), a->p.name, worst, who);
+                            watch_id(a, s.particle), a->p.name, worst, who);
 }
 
 /* -- Before an evaluation ----------------------------------------------------------------------- */
@@ -260,7 +261,7 @@ static int nowhere(struct run *r, const struct plan_array *a, size_t i, struct e
     return watch_fail(r, &s, e,
                       "the integrator made \"%s\" infinite or not a number for particle %lld of "
                       "array \"%s\"",
-                      a->p.column[a->position].name, id_of(a, i), a->p.name);
+                      a->p.column[a->position].name, watch_id(a, i), a->p.name);
 }
 
 /* Those that left: all are gone through, since some component of some is outside. */
@@ -278,11 +279,11 @@ static int left(struct run *r, const struct plan_array *a, const bool *inside, s
         s.particle = n++ ? s.particle : i;
     }
     s.others = n ? n - 1 : 0;
-    if (!n || r->watch->scene[WATCH_ESCAPED].action == WATCH_OFF || counted(r, &s, n))
+    if (!n || r->watch->scene[WATCH_ESCAPED].action == WATCH_OFF || watch_counted(r, &s, n))
         return 0;
     char who[160];
     return watch_fail(r, &s, e, "particle %lld of \"%s\" was moved %s out of %s, to a place",
-                      id_of(a, s.particle), a->p.name, made_by(who, sizeof who, s.by),
+                      watch_id(a, s.particle), a->p.name, watch_made_by(who, sizeof who, s.by),
                       inside                        ? "the region of watch.escaped.where"
                       : r->plan->scene->box.bounded ? "the domain"
                                                     : "all reach");
@@ -381,130 +382,6 @@ int watch_pass(struct run *r, const struct pass *p, struct error *e)
     return 0;
 }
 
-/* -- Neighbours --------------------------------------------------------------------------------- */
-
-/* Who made the smoothing length as it is: the last that writes it, if it has had its turn yet. */
-static const char *writer_of_h(const struct run *r, size_t array)
-{
-    const struct plan_array *a = &r->plan->array[array];
-    const bool later = r->watch->evaluated, begun = r->watch->begun;
-    const char *by = later && has_rate(a, a->smoothing) ? WATCH_INTEGRATOR : WATCH_SCENE;
-    for (size_t i = 0; i < r->plan->n_pass; i++)
-        if ((later || (begun && i <= r->watch->done)) &&
-            pass_writes(&r->plan->pass[i], array, a->smoothing))
-            by = r->plan->pass[i].name;
-    return by;
-}
-
-int watch_crowd(struct run *r, size_t k, struct error *e)
-{
-    const struct overflow *crowd = &r->list[k].crowd;
-    const size_t array = r->plan->list[k].dst;
-    const struct plan_array *a = &r->plan->array[array];
-    const struct sign s = {WATCH_NEIGHBOURS, a, crowd->first, 0, writer_of_h(r, array), NULL};
-    char who[160];
-    if (!crowd->n || counted(r, &s, crowd->n))
-        return 0;
-    return watch_fail(
-        r, &s, e,
-        "particle %lld of \"%s\" has %llu neighbours among \"%s\", more than %g, its h set %s,",
-        id_of(a, crowd->first), a->p.name, (unsigned long long)crowd->neighbours,
-        r->plan->array[r->plan->list[k].src].p.name, r->watch->scene[WATCH_NEIGHBOURS].limit,
-        made_by(who, sizeof who, s.by));
-}
-
-/* The particle with the largest smoothing length, or the first whose is no length. */
-static struct sign widest(const struct run *r)
-{
-    struct sign s = {.cause = WATCH_NEIGHBOURS};
-    double most = -1.0;
-    for (size_t k = 0; k < r->plan->n_array; k++) {
-        const struct plan_array *a = &r->plan->array[k];
-        for (size_t i = 0; i < a->p.n; i++) {
-            const double h = column_get(&a->p.column[a->smoothing], 0, i);
-            const bool none = !(h >= 0.0 && h <= DBL_MAX);
-            if (!none && !(h > most))
-                continue;
-            s.array = a;
-            s.particle = i;
-            s.by = writer_of_h(r, k);
-            s.cause = none ? WATCH_NOT_FINITE : WATCH_NEIGHBOURS;
-            if (none)
-                return s;
-            most = h;
-        }
-    }
-    return s;
-}
-
-static int tell_h(struct run *r, struct sign s, const char *what, struct error *e)
-{
-    char who[320];
-    const struct plan_array *a = s.array;
-    s.column = "h";
-    column_made_by(who, sizeof who, r, (size_t)(a - r->plan->array), a->smoothing, s.by);
-    return watch_fail(r, &s, e, "h of particle %lld of \"%s\" became %g %s%s,",
-                      id_of(a, s.particle), a->p.name,
-                      column_get(&a->p.column[a->smoothing], 0, s.particle), who, what);
-}
-
-int watch_no_lists(struct run *r, struct error *e)
-{
-    const struct sign s = widest(r);
-    return s.array && s.cause == WATCH_NOT_FINITE ? tell_h(r, s, "", e) : -1;
-}
-
-int watch_no_ghosts(struct run *r, struct error *e)
-{
-    const struct sign s = widest(r);
-    if (!s.array || !r->watch->evaluated)
-        return -1;
-    return tell_h(r, s, s.cause == WATCH_NEIGHBOURS ? ", as far as the domain is wide" : "", e);
-}
-
-/* Of one particle's neighbours those that are no ghosts. */
-static uint64_t real_neighbours(const struct run *r, const struct sign *s)
-{
-    const struct plan_array *a = s->array;
-    const double reach = column_get(&a->p.column[a->smoothing], 0, s->particle) *
-                         r->plan->kernel.support * r->plan->reach_scale;
-    uint64_t n = 0;
-    for (size_t k = 0; k < r->plan->n_array; k++) {
-        const struct plan_array *b = &r->plan->array[k];
-        if (!plan_pair(r->plan, (size_t)(a - r->plan->array), k))
-            continue;
-        for (size_t i = 0; i < b->p.n; i++) {
-            double r2 = 0.0;
-            for (uint32_t c = 0; c < b->p.column[b->position].ncomp; c++)
-                r2 += pow(column_get(&b->p.column[b->position], c, i) -
-                              column_get(&a->p.column[a->position], c, s->particle),
-                          2);
-            n += r2 < reach * reach && !(a == b && i == s->particle);
-        }
-    }
-    return n;
-}
-
-int watch_reach(struct run *r, double margin, struct error *e)
-{
-    const struct scene_watch *rule = &r->watch->scene[WATCH_NEIGHBOURS];
-    const struct box *box = &r->plan->scene->box;
-    bool wide = false;
-    for (int c = 0; c < r->plan->dim; c++)
-        wide = wide || (box->bounded && box->side[c][0] != SIDE_OPEN &&
-                        box->side[c][1] != SIDE_OPEN && 2.0 * margin > box->max[c] - box->min[c]);
-    if (!wide || rule->action != WATCH_STOP)
-        return 0;
-    const struct sign s = widest(r);
-    const uint64_t n = s.array && s.cause == WATCH_NEIGHBOURS ? real_neighbours(r, &s) : 0;
-    if (!((double)n > rule->limit))
-        return 0;
-    char what[96];
-    snprintf(what, sizeof what, ", which makes %llu neighbours and more, over %g,",
-             (unsigned long long)n, rule->limit);
-    return tell_h(r, s, what, e);
-}
-
 /* -- Steps and totals --------------------------------------------------------------------------- */
 
 /* Who bounds the step: NULL if no reduction does. */
@@ -549,13 +426,13 @@ int watch_time_step(struct run *r, double dt, double span, struct error *e)
     if (!stands && (!collapsed || rule->action == WATCH_OFF))
         return 0;
     const struct sign s = who_bounds(r, dt);
-    if (!stands && counted(r, &s, 1))
+    if (!stands && watch_counted(r, &s, 1))
         return 0;
     const struct reduction *d = bound_of(r, dt);
     char of[320] = "";
     if (s.array)
         snprintf(of, sizeof of, ", bounded by \"%s\" of pass %s for particle %lld of \"%s\"",
-                 d->declared->name, s.by, id_of(s.array, s.particle), s.array->p.name);
+                 d->declared->name, s.by, watch_id(s.array, s.particle), s.array->p.name);
     return watch_fail(r, &s, e,
                       "the time step collapsed to %g, %.3g times the longest of the run%s", dt,
                       w->longest > 0.0 ? dt / w->longest : 0.0, of);
@@ -594,12 +471,12 @@ int watch_energy(struct run *r, const struct totals *first, const struct totals 
     if (rule->action == WATCH_OFF || !(scale > 0.0) || !(fabs(grown) > rule->limit * scale))
         return 0;
     const struct sign s = who_moves(r);
-    if (counted(r, &s, 1))
+    if (watch_counted(r, &s, 1))
         return 0;
     char who[160] = "";
     if (s.array)
         snprintf(who, sizeof who, ", the most kinetic energy has particle %lld of \"%s\",",
-                 id_of(s.array, s.particle), s.array->p.name);
+                 watch_id(s.array, s.particle), s.array->p.name);
     return watch_fail(r, &s, e, "the total energy went from %g to %g, by %.3g times its scale %g%s",
                       begin, begin + grown, fabs(grown) / scale, scale, who);
 }

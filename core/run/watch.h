@@ -99,4 +99,13 @@ struct failure watch_record(const struct run *r, const struct sign *s);
 #define WATCH_INTEGRATOR "integrator"
 #define WATCH_SCENE "scene"
 
+/* watch.c, for the files watch*.c. True: the sign is counted, with n particles, and the run goes on. */
+bool watch_counted(struct run *r, const struct sign *s, uint64_t n);
+/* Who made it, in a sentence; of a column, with what the integrator made it of. Both return text. */
+const char *watch_made_by(char *text, size_t size, const char *by);
+const char *watch_column_made_by(char *text, size_t size, const struct run *r, size_t array,
+                                 int column, const char *by);
+long long watch_id(const struct plan_array *a, size_t i);
+bool watch_has_rate(const struct plan_array *a, int column);
+
 #endif

@@ -50,6 +50,9 @@ sph_status exact_each(const sph_batch *b, const sph_item *item, exact_at at, con
 __attribute__((format(printf, 3, 4))) sph_status exact_fail(const sph_host *host, sph_status status,
                                                             const char *format, ...);
 
+/* sph_life.destroy of a state that is one block of malloc. */
+void exact_free(const sph_host *host, void *state);
+
 /* f and its derivative at x; 0: unknown. */
 typedef double (*exact_function)(const void *of, double x, double *derivative);
 

@@ -164,12 +164,6 @@ static sph_status create(const sph_host *host, const sph_config *c, uint32_t dim
     return SPH_OK;
 }
 
-static void destroy(const sph_host *host, void *state)
-{
-    (void)host;
-    free(state);
-}
-
 /* At one time: deflection and speed of the free end. */
 struct moment {
     const struct plate *plate;
@@ -207,7 +201,7 @@ static sph_status run(const sph_batch *b)
 static const sph_life life = {
     .size = (uint32_t)sizeof(sph_life),
     .create = create,
-    .destroy = destroy,
+    .destroy = exact_free,
 };
 
 static const sph_item item = {

@@ -152,12 +152,6 @@ static sph_status create(const sph_host *host, const sph_config *c, uint32_t dim
     return SPH_OK;
 }
 
-static void destroy(const sph_host *host, void *state)
-{
-    (void)host;
-    free(state);
-}
-
 /* Within the rarefaction of the left side: eq. 4.56. */
 static struct side inside_fan(const struct side *k, double gamma, double s)
 {
@@ -247,7 +241,7 @@ static sph_status run(const sph_batch *b)
 static const sph_life life = {
     .size = (uint32_t)sizeof(sph_life),
     .create = create,
-    .destroy = destroy,
+    .destroy = exact_free,
 };
 
 static const sph_item item = {

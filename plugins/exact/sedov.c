@@ -114,12 +114,6 @@ static sph_status create(const sph_host *host, const sph_config *c, uint32_t dim
     return SPH_OK;
 }
 
-static void destroy(const sph_host *host, void *state)
-{
-    (void)host;
-    free(state);
-}
-
 /* At one time: radius of the shock, and what is behind it. */
 struct moment {
     const struct blast *blast;
@@ -192,7 +186,7 @@ static sph_status run(const sph_batch *b)
 static const sph_life life = {
     .size = (uint32_t)sizeof(sph_life),
     .create = create,
-    .destroy = destroy,
+    .destroy = exact_free,
 };
 
 static const sph_item item = {

@@ -3,6 +3,7 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Where a field lies in a point. */
@@ -73,6 +74,12 @@ sph_status exact_fail(const sph_host *host, sph_status status, const char *forma
     vsnprintf(text, sizeof(text), format, list);
     va_end(list);
     return host->fail(host, status, text);
+}
+
+void exact_free(const sph_host *host, void *state)
+{
+    (void)host;
+    free(state);
 }
 
 double exact_root(exact_function f, const void *of, double low, double high)

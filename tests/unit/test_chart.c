@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "chart/csv.h"
+#include "io/cells.h"
 #include "chart/fit.h"
 #include "chart/results.h"
 
@@ -100,20 +100,20 @@ static void ranges_hold_the_data(void **state)
 static void reads_csv(void **state)
 {
     static const char text[] = "# made by hand\nname,error\r\n\"a, \"\"b\"\"\nc\",1\n\n# more\n,\n";
-    struct csv t;
+    struct cells t;
     struct error e;
     (void)state;
-    assert_int_equal(csv_parse(&t, "t.csv", text, strlen(text), &e), 0);
+    assert_int_equal(cells_parse(&t, "t.csv", text, strlen(text), &e), 0);
     assert_int_equal(t.n_column, 2);
     assert_int_equal(t.n_row, 2);
-    assert_int_equal(csv_column(&t, "error"), 1);
-    assert_true(csv_column(&t, "cost") == (size_t)-1);
-    assert_string_equal(csv_cell(&t, 0, 0), "a, \"b\"\nc");
-    assert_string_equal(csv_cell(&t, 0, 1), "1");
-    assert_string_equal(csv_cell(&t, 1, 1), "");
+    assert_int_equal(cells_column(&t, "error"), 1);
+    assert_true(cells_column(&t, "cost") == (size_t)-1);
+    assert_string_equal(cells_at(&t, 0, 0), "a, \"b\"\nc");
+    assert_string_equal(cells_at(&t, 0, 1), "1");
+    assert_string_equal(cells_at(&t, 1, 1), "");
     assert_int_equal(t.line[0], 3);
     assert_int_equal(t.line[1], 7);
-    csv_free(&t);
+    cells_free(&t);
 }
 
 static void refuses_csv(void **state)
@@ -125,11 +125,11 @@ static void refuses_csv(void **state)
                {"a,b\n1,2\n1\n", "t.csv:3: 1 cells"},
                {"a,b\n1,\"2\n", "t.csv:3: the text's closing"},
                {"a\n\xff\n", "t.csv: is no text"}};
-    struct csv t;
+    struct cells t;
     struct error e;
     (void)state;
     for (size_t i = 0; i < COUNT(bad); i++) {
-        assert_int_equal(csv_parse(&t, "t.csv", bad[i].text, strlen(bad[i].text), &e), -1);
+        assert_int_equal(cells_parse(&t, "t.csv", bad[i].text, strlen(bad[i].text), &e), -1);
         assert_memory_equal(e.text, bad[i].why, strlen(bad[i].why));
         assert_int_equal(e.exit_code, EXIT_USAGE);
     }

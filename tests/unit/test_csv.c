@@ -86,21 +86,6 @@ static void is_cut_and_gone_on_with(void **state)
     free(text);
 }
 
-static void is_split(void **state)
-{
-    (void)state;
-    char row[] = "7,0.5,\"a, \"\"b\"\"\",,x\n", last[] = "1,2,3";
-    char *cell[8];
-    assert_int_equal(csv_split(row, cell, 8), 5);
-    assert_string_equal(cell[0], "7");
-    assert_string_equal(cell[1], "0.5");
-    assert_string_equal(cell[2], "a, \"b\"");
-    assert_string_equal(cell[3], "");
-    assert_string_equal(cell[4], "x");
-    assert_int_equal(csv_split(last, cell, 2), 2);
-    assert_string_equal(cell[1], "2");
-}
-
 static void is_read_back(void **state)
 {
     static const char *const names[] = {"time", "value"}, *const wrong[] = {"time", "valu"};
@@ -147,7 +132,6 @@ int main(void)
 {
 #define TEST(f) cmocka_unit_test_setup_teardown(f, scratch_setup, scratch_teardown)
     const struct CMUnitTest tests[] = {TEST(is_written_whole), TEST(is_cut_and_gone_on_with),
-                                       TEST(is_read_back), TEST(is_split),
-                                       TEST(takes_back_what_is_not_whole)};
+                                       TEST(is_read_back), TEST(takes_back_what_is_not_whole)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,5 @@
-/* chart/csv.c -- CSV files of texts: reading. */
-#include "chart/csv.h"
+/* io/cells.c -- CSV files of texts: reading. */
+#include "io/cells.h"
 
 #include "base/text.h"
 #include <errno.h>
@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define CSV_BYTES ((size_t)64 << 20)
+#define CELLS_BYTES ((size_t)64 << 20)
 
 struct reader {
     const char *path, *text;
@@ -97,7 +97,7 @@ static int read_line(struct reader *r, size_t *line, struct error *e)
     return 0;
 }
 
-static int keep_line(struct csv *t, struct reader *r, size_t line, struct error *e)
+static int keep_line(struct cells *t, struct reader *r, size_t line, struct error *e)
 {
     const size_t n = t->n_column;
     if (r->n_cell != n)
@@ -117,7 +117,7 @@ static int keep_line(struct csv *t, struct reader *r, size_t line, struct error 
     return 0;
 }
 
-static int read_table(struct csv *t, struct reader *r, struct error *e)
+static int read_table(struct cells *t, struct reader *r, struct error *e)
 {
     size_t line;
     if (read_line(r, &line, e))
@@ -140,23 +140,23 @@ static int read_table(struct csv *t, struct reader *r, struct error *e)
     }
 }
 
-int csv_parse(struct csv *t, const char *path, const char *text, size_t n, struct error *e)
+int cells_parse(struct cells *t, const char *path, const char *text, size_t n, struct error *e)
 {
     struct reader r = {.path = path, .text = text, .n = n, .line = 1};
-    *t = (struct csv){0};
+    *t = (struct cells){0};
     if (memchr(text, '\0', n) || text_invalid_utf8(text, n) != (size_t)-1)
         return error_set(e, EXIT_USAGE, "%s: is no text in UTF-8", path);
     const int status = read_table(t, &r, e);
     drop_cells(&r);
     free(r.cell);
     if (status)
-        csv_free(t);
+        cells_free(t);
     return status;
 }
 
-int csv_read(struct csv *t, const char *path, struct error *e)
+int cells_read(struct cells *t, const char *path, struct error *e)
 {
-    *t = (struct csv){0};
+    *t = (struct cells){0};
     FILE *file = fopen(path, "rbe");
     if (!file)
         return error_set(e, EXIT_USAGE, "%s: cannot be read: %s", path, strerror(errno));
@@ -172,19 +172,19 @@ int csv_read(struct csv *t, const char *path, struct error *e)
         text = grown;
         got = fread(text + n, 1, 65536, file);
         n += got;
-    } while (got > 0 && n <= CSV_BYTES);
+    } while (got > 0 && n <= CELLS_BYTES);
     if (!status && ferror(file))
         status = error_set(e, EXIT_USAGE, "%s: cannot be read: %s", path, strerror(errno));
-    if (!status && n > CSV_BYTES)
-        status = error_set(e, EXIT_USAGE, "%s: is larger than %zu MiB", path, CSV_BYTES >> 20);
+    if (!status && n > CELLS_BYTES)
+        status = error_set(e, EXIT_USAGE, "%s: is larger than %zu MiB", path, CELLS_BYTES >> 20);
     fclose(file);
     if (!status)
-        status = csv_parse(t, path, text, n, e);
+        status = cells_parse(t, path, text, n, e);
     free(text);
     return status;
 }
 
-void csv_free(struct csv *t)
+void cells_free(struct cells *t)
 {
     for (size_t i = 0; i < t->n_column; i++)
         free(t->name[i]);
@@ -193,10 +193,10 @@ void csv_free(struct csv *t)
     free(t->name);
     free(t->cell);
     free(t->line);
-    *t = (struct csv){0};
+    *t = (struct cells){0};
 }
 
-size_t csv_column(const struct csv *t, const char *name)
+size_t cells_column(const struct cells *t, const char *name)
 {
     for (size_t i = 0; i < t->n_column; i++)
         if (strcmp(t->name[i], name) == 0)
@@ -204,7 +204,7 @@ size_t csv_column(const struct csv *t, const char *name)
     return (size_t)-1;
 }
 
-const char *csv_cell(const struct csv *t, size_t row, size_t column)
+const char *cells_at(const struct cells *t, size_t row, size_t column)
 {
     return t->cell[row * t->n_column + column];
 }

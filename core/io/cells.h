@@ -1,11 +1,11 @@
-/* chart/csv.h -- a table of texts with named columns: a CSV file as a whole. */
-#ifndef CHART_CSV_H
-#define CHART_CSV_H
+/* io/cells.h -- a table of texts with named columns: a CSV file as a whole. */
+#ifndef IO_CELLS_H
+#define IO_CELLS_H
 
 #include "base/error.h"
 #include <stddef.h>
 
-struct csv {
+struct cells {
     char **name;  /* [n_column] */
     char **cell;  /* [n_row][n_column] */
     size_t *line; /* [n_row] in the file, from 1 */
@@ -14,12 +14,12 @@ struct csv {
 
 /* Reads a CSV file (RFC 4180; lines that begin with "#" are comments). Every row has a cell for every
  * column, or it is an error that names the line. On failure nothing is to be freed. */
-int csv_read(struct csv *t, const char *path, struct error *e);
+int cells_read(struct cells *t, const char *path, struct error *e);
 /* As above, of a text in memory; `path` is for messages. */
-int csv_parse(struct csv *t, const char *path, const char *text, size_t n, struct error *e);
-void csv_free(struct csv *t);
+int cells_parse(struct cells *t, const char *path, const char *text, size_t n, struct error *e);
+void cells_free(struct cells *t);
 /* Index of a column, or (size_t)-1. */
-size_t csv_column(const struct csv *t, const char *name);
-const char *csv_cell(const struct csv *t, size_t row, size_t column);
+size_t cells_column(const struct cells *t, const char *name);
+const char *cells_at(const struct cells *t, size_t row, size_t column);
 
 #endif

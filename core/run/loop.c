@@ -9,7 +9,7 @@
 
 /* Drifts are the largest over the logged steps: energy relative to the first total (or its parts, where they cancel);
  * momentum relative to sum m |v|. */
-static int watch(struct loop *l, struct error *e)
+static int take_totals(struct loop *l, struct error *e)
 {
     if (run_settle(&l->run, e))
         return -1;
@@ -117,7 +117,7 @@ static int after_step(struct loop *l, struct error *e)
     bool by_time = r->time >= l->next_log;
     const bool logged = last || is_logged(l, r->step, r->time);
     /* Sums over all particles: where they are written. Rates are looked at in every evaluation. */
-    if (logged && watch(l, e))
+    if (logged && take_totals(l, e))
         return -1;
     if (!isfinite(totals_energy(&l->last)) && finite_trace(r, e))
         return -1;
@@ -148,7 +148,7 @@ static int start(struct loop *l, struct error *e)
     if (run_passes(r, MOMENT_START, e) || run_passes(r, MOMENT_EVALUATE, e))
         return -1;
     run_totals(r, &l->first);
-    if (watch(l, e))
+    if (take_totals(l, e))
         return -1;
     l->next_output = 1;
     l->next_log =

@@ -40,7 +40,7 @@
 SPH_BEGIN_DECLS
 
 #define SPH_ABI_MAJOR 0u
-#define SPH_ABI_MINOR 4u
+#define SPH_ABI_MINOR 5u
 
 #if defined(__GNUC__)
 #define SPH_EXPORT __attribute__((visibility("default")))

@@ -45,5 +45,26 @@ typedef struct sph_device_body {
     sph_list param; /* parameters, as doubles; a choice is its index */
 } sph_device_body;
 
+/* What a destination does alone, for a device: a point function, `before` or `after` of a pair function, an
+ * equation of state. point-loop.h makes one from the lists of its loop, so that both backends run the same
+ * text. The body is of one particle: R and T are double (float on a device without doubles), branches are
+ * allowed; it has the words of lanes.h, DIM, b->time, b->dt, b->step, K (the scene's kernel), h (of pair
+ * functions), and the names in these lists: a scalar is a variable of that name, vectors and matrices are
+ * arrays, an int32 is an int. */
+typedef struct sph_device_point {
+    uint32_t size, reserved;
+    const char *text, *file;            /* as of sph_device_body */
+    const char *prelude, *prelude_file; /* likewise */
+    sph_list in;  /* of sph_device_value, like the rest: declared properties that it reads alone */
+    sph_list out; /* that it sets, whatever they were */
+    sph_list inout; /* that it reads and sets; what the body does not touch stays as it is */
+    sph_list param; /* parameters, as doubles; a choice is its index */
+    /* Numbers of the use's state: the index-th double of those at its beginning. `prepare` and `create`
+     * may set them; the host hands them on before each pass. type: 0. */
+    sph_list state;
+    sph_list
+        fail; /* of const char *: what sph_fail(k) says, with SPH_E_NUMERIC, of which the run ends */
+} sph_device_point;
+
 SPH_END_DECLS
 #endif

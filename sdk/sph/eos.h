@@ -3,6 +3,7 @@
 #define SPH_EOS_H
 
 #include <sph/batch.h>
+#include <sph/device.h>
 #include <sph/item.h>
 
 SPH_BEGIN_DECLS
@@ -18,8 +19,9 @@ typedef struct sph_eos {
     /* The inverse, for initial states given by what `run` writes: from p and rho to u. The host
      * uses it where a scene gives a field that run writes instead of one that it reads. [worker],
      * once, before the first step */
-    sph_range_fn inverse;   /* or NULL */
-    sph_list inverse_props; /* of sph_prop; columns of the inverse's batch, in this order */
+    sph_range_fn inverse;           /* or NULL */
+    sph_list inverse_props;         /* of sph_prop; columns of the inverse's batch, in this order */
+    const sph_device_point *device; /* `run` for a device (device.h); NULL: none */
 } sph_eos;
 
 SPH_END_DECLS

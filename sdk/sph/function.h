@@ -89,6 +89,9 @@ typedef struct sph_function {
      * position: neighbours, dx and r are in it, such as in a solid's reference configuration. In
      * domains without periodic and mirror sides, in doubles. NULL: the position. */
     const char *over;
+    /* The same for a device (device.h), or NULL: of a point function's `run`; of a pair function's
+     * `before` and `after`, as far as it has them. A function of which one lacks runs natively alone. */
+    const sph_device_point *device_run, *device_before, *device_after;
 } sph_function;
 
 SPH_END_DECLS

@@ -18,6 +18,9 @@ struct stage {
     uint32_t real; /* of its sweeps: SPH_F64 or SPH_F32 */
     size_t frame;  /* of its lists */
     bool iterates; /* one pass with max_sweeps */
+    /* One pair pass that writes what its sweeps read of others (!pass.local): reset and `before`, the sweeps,
+     * `after` are launched one behind the other, each for all. */
+    bool phased;
 };
 
 /* Of all passes of a moment, in order. `fuse` false: a pass a stage. */

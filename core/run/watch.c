@@ -425,6 +425,8 @@ int watch_time_step(struct run *r, double dt, double span, struct error *e)
     w->longest = dt < INFINITY ? fmax(w->longest, dt) : w->longest;
     if (!stands && (!collapsed || rule->action == WATCH_OFF))
         return 0;
+    if (run_fetch(r, e))
+        return -1;
     const struct sign s = who_bounds(r, dt);
     if (!stands && watch_counted(r, &s, 1))
         return 0;

@@ -6,7 +6,7 @@
  * since there were lists is seen. What follows the last evaluation of a step may wait for the beginning of
  * the next and be part of its program (run_settle). */
 #include "base/clones.h"
-#include "run/run.h"
+#include "run/device.h"
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>

@@ -11,9 +11,8 @@
  * momentum relative to sum m |v|. */
 static int take_totals(struct loop *l, struct error *e)
 {
-    if (run_look(&l->run, e))
+    if (run_settle(&l->run, e) || run_totals(&l->run, &l->last, e))
         return -1;
-    run_totals(&l->run, &l->last);
     const struct totals *a = &l->first, *b = &l->last;
     double scale = fmax(fabs(totals_energy(a)), fabs(a->kinetic) + fabs(a->internal));
     double drift = scale > 0.0 ? (totals_energy(b) - totals_energy(a)) / scale
@@ -119,7 +118,7 @@ static int after_step(struct loop *l, struct error *e)
     /* Sums over all particles: where they are written. Rates are looked at in every evaluation. */
     if (logged && take_totals(l, e))
         return -1;
-    if (!isfinite(totals_energy(&l->last)) && finite_trace(r, e))
+    if (!isfinite(totals_energy(&l->last)) && (run_fetch(r, e) || finite_trace(r, e)))
         return -1;
     if (!isfinite(totals_energy(&l->last)))
         return watch_fail(r, &(struct sign){.cause = WATCH_NOT_FINITE}, e,
@@ -147,10 +146,7 @@ static int start(struct loop *l, struct error *e)
     r->look = true;
     if (run_passes(r, MOMENT_START, e) || run_passes(r, MOMENT_EVALUATE, e))
         return -1;
-    if (run_fetch(r, e))
-        return -1;
-    run_totals(r, &l->first);
-    if (take_totals(l, e))
+    if (run_totals(r, &l->first, e) || take_totals(l, e))
         return -1;
     l->next_output = 1;
     l->next_log =

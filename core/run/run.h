@@ -179,7 +179,12 @@ bool any_not_finite(const double *value, size_t n);
 bool any_not_finite4(const float *value, size_t n);
 
 /* totals.c */
-void run_totals(const struct run *r, struct totals *t);
+int run_totals(struct run *r, struct totals *t, struct error *e);
+/* Where a reduction of this use is summed up; NULL: nowhere. */
+static inline double *totals_of(struct totals *t, uint32_t use)
+{
+    return use == SPH_USE_INTERNAL ? &t->internal : use == SPH_USE_POTENTIAL ? &t->potential : NULL;
+}
 
 /* audit.c: proves that passes touch only what they declare. */
 int audit_open(struct run *r, struct error *e);

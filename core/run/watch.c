@@ -472,6 +472,8 @@ int watch_energy(struct run *r, const struct totals *first, const struct totals 
     const double scale = !isnan(rule->scale) ? rule->scale : now->has_energy ? parts : 0.0;
     if (rule->action == WATCH_OFF || !(scale > 0.0) || !(fabs(grown) > rule->limit * scale))
         return 0;
+    if (run_fetch(r, e))
+        return -1;
     const struct sign s = who_moves(r);
     if (watch_counted(r, &s, 1))
         return 0;

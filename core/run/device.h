@@ -40,6 +40,8 @@ int run_device_refresh(struct run *r, size_t array, int column, struct error *e)
 
 /* run_totals. */
 int run_device_totals(struct run *r, struct totals *t, struct error *e);
+/* device_store.c: lists and ghosts into a checkpoint or out of it; of reading, after the host's particles. */
+int run_device_store(struct run *r, struct store *s, struct error *e);
 /* One column on the host is right; all are. */
 int run_device_get(struct run *r, size_t array, int column, struct error *e);
 int run_device_fetch(struct run *r, struct error *e);

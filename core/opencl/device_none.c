@@ -94,6 +94,12 @@ int device_build(struct device *d, struct device_program **out, const char *text
     return none(e);
 }
 
+const char *device_build_file(const struct device *d)
+{
+    (void)d;
+    return NULL;
+}
+
 void device_program_free(struct device *d, struct device_program *p)
 {
     (void)d, (void)p;

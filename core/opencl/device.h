@@ -124,4 +124,13 @@ struct device_time {
 /* All so far, waited for; the device's, until the next call. */
 const struct device_time *device_times(struct device *d, size_t *n);
 
+/* What the device reaches with the simplest kernels; 0: does not have it. */
+struct device_rates {
+    double bytes;                /* of a triad, read and written [1/s] */
+    double flops_f32, flops_f64; /* of multiply-adds, two each [1/s] */
+};
+/* Measured in some tenths of a second, or known from an earlier run. Takes some of the device's memory
+ * meanwhile. */
+int device_measure(struct device *d, struct device_rates *r, struct error *e);
+
 #endif

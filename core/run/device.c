@@ -349,12 +349,13 @@ int run_device_collect(struct run *r, struct error *e)
     double *value;
     int status;
 
-    if (!d->n_slot)
-        return 0;
-    value = malloc(d->n_slot * sizeof(*value));
+    uint32_t flags = 0;
+    value = malloc((d->n_slot + 1) * sizeof(*value));
     if (!value)
         return error_memory(e, "reductions", d->n_slot * sizeof(*value));
-    status = ops_results(d->ops, value, d->n_slot, e);
+    status = ops_results(d->ops, value, d->n_slot, &flags, e);
+    if (!status && (flags & OPS_NOWHERE))
+        status = error_set(e, EXIT_RUN, "a particle is nowhere, or left the domain");
     for (size_t i = 0; i < r->plan->n_reduction; i++) {
         if (!status && d->slot[i] != NO_SLOT)
             r->reduced[i] = value[d->slot[i]];

@@ -209,8 +209,10 @@ static int sort(struct run *r, struct error *e)
                          : 0;
         device_release(r->device->d, &order);
         r->device->ghosts[a].n = 0;
-        for (size_t c = 0; c < arena->p->n_column; c++)
-            run_device_changed(r, a, (int)c);
+        for (size_t c = 0; c < arena->p->n_column; c++) {
+            r->stale[a][c] = false;
+            r->mirror_old[a][c] = MIRROR_OLD;
+        }
     }
     r->builds_since_sort = 0;
     r->cost.sorts++;

@@ -106,15 +106,11 @@ void run_device_close(struct run *r)
     kernels_free(d->kernels);
     for (size_t k = 0; d->list && k < r->plan->n_list; k++)
         device_list_release(d->d, &d->list[k]);
-    for (size_t k = 0; d->skin && k < n * r->plan->n_frame; k++) {
-        device_release(d->d, &d->skin[k].x);
-        device_release(d->d, &d->skin[k].h);
-    }
+    for (size_t k = 0; d->skin && k < n * r->plan->n_frame; k++)
+        ops_skin_release(d->ops, &d->skin[k]);
     for (size_t a = 0; a < n; a++) {
-        if (d->ghosts) {
-            device_release(d->d, &d->ghosts[a].parent);
-            device_release(d->d, &d->ghosts[a].image);
-        }
+        if (d->ghosts)
+            ops_ghosts_release(d->ops, &d->ghosts[a]);
         if (d->arena)
             arena_fini(&d->arena[a]);
     }

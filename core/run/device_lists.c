@@ -172,16 +172,15 @@ static int keep_places(struct run *r, size_t frame, struct error *e)
 static int wrap(struct run *r, struct error *e)
 {
     for (size_t a = 0; a < r->plan->n_array; a++) {
-        size_t moved = 0;
         struct arena *arena = &r->device->arena[a];
         if (arena->n == 0)
             continue;
         for (size_t c = 0; c < arena->p->n_column; c++)
             if (arena->p->column[c].state && arena_put(arena, (int)c, e))
                 return -1;
-        if (ops_wrap(r->device->ops, arena, &r->plan->scene->box, &moved, e))
+        if (ops_wrap(r->device->ops, arena, &r->plan->scene->box, NULL, e))
             return -1;
-        for (size_t c = 0; moved && c < arena->p->n_column; c++)
+        for (size_t c = 0; c < arena->p->n_column; c++)
             if (arena->p->column[c].state)
                 run_device_changed(r, a, (int)c);
     }

@@ -2,7 +2,6 @@
  * behind. */
 #include "opencl/ops_private.h"
 
-#include "base/text.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -62,7 +61,7 @@ static int build(struct ops *o, struct error *e)
     return status;
 }
 
-int ops_open(struct ops **out, struct device *d, int dim, struct error *e)
+int ops_open_wide(struct ops **out, struct device *d, int dim, size_t wide, struct error *e)
 {
     struct ops *o = calloc(1, sizeof *o);
     const size_t bytes = sizeof(struct ops_words) + OPS_RESULTS * sizeof(double);
@@ -71,7 +70,7 @@ int ops_open(struct ops **out, struct device *d, int dim, struct error *e)
         return error_memory(e, "kernels", sizeof *o);
     o->d = d;
     o->dim = dim;
-    o->wide = device_facts(d)->cpu ? 8 : 1;
+    o->wide = wide;
     if (build(o, e) || device_reserve(d, &o->words, bytes, "results", e) ||
         device_fill(d, &o->words, 0, 0, bytes, e)) {
         ops_close(o);
@@ -79,6 +78,11 @@ int ops_open(struct ops **out, struct device *d, int dim, struct error *e)
         return -1;
     }
     return 0;
+}
+
+int ops_open(struct ops **out, struct device *d, int dim, struct error *e)
+{
+    return ops_open_wide(out, d, dim, device_facts(d)->cpu ? 8 : 1, e);
 }
 
 void ops_close(struct ops *o)
@@ -93,6 +97,7 @@ void ops_close(struct ops *o)
     if (o->program)
         device_program_free(o->d, o->program);
     free(o->box);
+    free(o->turned);
     free(o);
 }
 
@@ -150,6 +155,26 @@ int ops_mirror_places(struct ops *o, struct arena *a, int column, const double *
 }
 
 /* -- Order -------- */
+
+int ops_copy(struct ops *o, struct arena *a, int from, int to, struct error *e)
+{
+    const struct column *c = &a->p->column[from], *other = &a->p->column[to];
+    const struct arena_place *x = &a->place[from], *y = &a->place[to];
+    struct device_buffer *buffer = x->size == 8 ? &a->wide : &a->narrow;
+    if (x->size != y->size || c->ncomp != other->ncomp)
+        return error_set(e, EXIT_RUN, "%s.%s cannot hold what %s is", a->p->name, other->name,
+                         c->name);
+    if (from == to)
+        return 0;
+    if (ops_bring(a, from, e))
+        return -1;
+    for (uint32_t k = 0; k < c->ncomp; k++)
+        if (device_copy(o->d, buffer, (y->slot + k) * a->plane * y->size, buffer,
+                        (x->slot + k) * a->plane * x->size, a->n * x->size, e))
+            return -1;
+    arena_written_here(a, to);
+    return 0;
+}
 
 static int permute_plane(struct ops *o, struct arena *a, struct device_buffer *buffer, size_t size,
                          uint32_t slot, const struct device_buffer *order, struct error *e)

@@ -40,6 +40,8 @@ int ops_mirror_places(struct ops *o, struct arena *a, int column, const double *
 /* particles_permute: order: uint[n]; every `state` column of the array. Ghosts are lost. Of the other columns
  * neither side's copy is right afterwards. */
 int ops_permute(struct ops *o, struct arena *a, const struct device_buffer *order, struct error *e);
+/* Real particles' values of one column into another of the same type, held alike. */
+int ops_copy(struct ops *o, struct arena *a, int from, int to, struct error *e);
 /* A column's component of n real particles to one number, the same however often and on any device of its kind:
  * reduce_range. mass: a column or -1: its product with the value is summed. op: SPH_REDUCE_... */
 int ops_reduce(struct ops *o, const struct arena *a, int column, uint32_t component, int mass,

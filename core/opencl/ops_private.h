@@ -49,7 +49,9 @@ struct ops {
     struct device_kernel *kernel[OPS_KERNELS];
     struct device_buffer words; /* struct ops_words, then OPS_RESULTS doubles */
     struct device_buffer part, scratch, count, sides, table;
-    void *box; /* what `sides` holds; in ops_sides.c */
+    void *box;    /* what `sides` holds; in ops_sides.c */
+    void *turned; /* what `table` holds; likewise */
+    size_t turned_bytes;
     struct ops_program advance[OPS_PROGRAMS];
     size_t n_advance; /* ever made; the oldest gives way */
 };
@@ -86,6 +88,9 @@ static inline int ops_bring(struct arena *a, int column, struct error *e)
 {
     return column >= 0 && !a->here[column] && a->there[column] ? arena_put(a, column, e) : 0;
 }
+
+/* ops_open with work items of `wide` particles, 8 or 1, whatever suits the device. */
+int ops_open_wide(struct ops **out, struct device *d, int dim, size_t wide, struct error *e);
 
 /* Programs are gone; in ops_advance.c. */
 void ops_forget_programs(struct ops *o);

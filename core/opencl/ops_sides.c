@@ -2,7 +2,6 @@
  * them. */
 #include "opencl/ops_private.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -114,21 +113,27 @@ static int bring(struct arena *a, struct error *e)
     return 0;
 }
 
+/* The table is there; already, unless it is another one. */
 static int put_table(struct ops *o, struct arena *a, struct wrapping *w, struct error *e)
 {
-    const size_t most = 1 + 2 * (size_t)(a->n_wide + a->n_narrow);
+    const size_t most = 1 + 2 * (size_t)(a->n_wide + a->n_narrow), bytes = most * sizeof *w->table;
     w->table = calloc(most, sizeof *w->table);
     if (!w->table)
-        return error_memory(e, "the sides of the domain", most * sizeof *w->table);
+        return error_memory(e, "the sides of the domain", bytes);
     list_kept(w, a);
     list_turned(w, a);
-    const int status =
-        device_reserve(o->d, &o->table, most * sizeof *w->table, "sides", e) ||
-                device_write(o->d, &o->table, 0, w->table, most * sizeof *w->table, e)
-            ? -1
-            : 0;
-    free(w->table);
-    return status;
+    if (o->turned_bytes == bytes && memcmp(o->turned, w->table, bytes) == 0) {
+        free(w->table);
+        return 0;
+    }
+    free(o->turned);
+    o->turned = w->table;
+    o->turned_bytes = 0; /* until it is there */
+    if (device_reserve(o->d, &o->table, bytes, "sides", e) ||
+        device_write(o->d, &o->table, 0, w->table, bytes, e))
+        return -1;
+    o->turned_bytes = bytes;
+    return 0;
 }
 
 int ops_wrap(struct ops *o, struct arena *a, const struct box *box, size_t *moved, struct error *e)

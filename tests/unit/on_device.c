@@ -6,6 +6,7 @@
 #include "opencl/pair_body.h"
 #include "registry/loader.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -201,14 +202,44 @@ struct kernel_now on_device_now(const struct on_device *o)
                                .uniform_h = r->h_fixed && !(low < high)};
 }
 
+static int is_busy(const struct on_device *o, const struct stage *s, bool *busy, struct error *e)
+{
+    const struct arena *a = &o->arena[s->array];
+    const struct pass *p = &o->plan.pass[s->pass[s->n_head]];
+    int32_t *asks = malloc((a->n + 1) * sizeof(*asks));
+    int status = asks ? 0 : error_memory(e, "a column", a->n);
+
+    *busy = false;
+    if (!status)
+        status = device_read(o->d, &a->narrow, a->place[p->unfinished].slot * a->plane * 4, asks,
+                             a->n * 4, e);
+    for (size_t i = 0; !status && i < a->n; i++)
+        *busy = *busy || asks[i];
+    free(asks);
+    return status;
+}
+
+int on_device_stage(struct on_device *o, size_t k, struct error *e)
+{
+    const struct stage *s = &o->stage[k];
+    struct kernel_now now = on_device_now(o);
+    bool again = true;
+
+    for (now.sweep = 0; again; now.sweep++) {
+        if (kernels_launch(o->kernels, k, o->arena, o->list, &now, e))
+            return -1;
+        again = s->iterates && now.sweep + 1 < o->plan.pass[s->pass[s->n_head]].max_sweeps;
+        if (again && is_busy(o, s, &again, e))
+            return -1;
+    }
+    return 0;
+}
+
 int on_device_run(struct on_device *o, struct error *e)
 {
-    struct kernel_now now = on_device_now(o);
-
-    for (size_t s = 0; s < o->n_stage; s++)
-        for (now.sweep = 0; now.sweep < (o->stage[s].iterates ? 50u : 1u); now.sweep++)
-            if (kernels_launch(o->kernels, s, o->arena, o->list, &now, e))
-                return -1;
+    for (size_t k = 0; k < o->n_stage; k++)
+        if (on_device_stage(o, k, e))
+            return -1;
     return device_finish(o->d, e);
 }
 

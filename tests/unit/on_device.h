@@ -32,7 +32,8 @@ int on_device_open(struct on_device *o, size_t number, const char *scene, const 
 void on_device_close(struct on_device *o);
 /* All columns go to the device, ghosts and mirrors as well, and the lists as they are. */
 int on_device_put(struct on_device *o, struct error *e);
-/* All stages of the evaluation there. */
+/* A stage of the evaluation there, until nobody asks for another sweep; all of them. */
+int on_device_stage(struct on_device *o, size_t k, struct error *e);
 int on_device_run(struct on_device *o, struct error *e);
 struct kernel_now on_device_now(const struct on_device *o);
 /* A column's component of n real particles, as the device has it. */

@@ -315,8 +315,10 @@ static void put_alone(struct kernel_text *t, bool begins)
 {
     if (begins) {
         fputs("    {\n#undef SPH_ISA\n#define SPH_ISA f64x1\n", t->out);
-        if (t->vectors && !has_pairs(t))
-            fputs("#pragma clang loop vectorize(assume_safety)\n", t->out);
+        if (t->vectors)
+            fputs(
+                "#pragma clang loop vectorize(assume_safety) vectorize_width(8) interleave_count(1)\n",
+                t->out);
         fputs("    for (uint sph_l = 0; sph_l < sph_lanes; sph_l++) {\n"
               "    const ulong sph_o = sph_i + sph_l;\n",
               t->out);

@@ -55,9 +55,9 @@ static size_t number(const char *s, bool *real)
     return n;
 }
 
-/* Whether a loop that begins here goes over components: its head, up to the bracket that closes it, speaks of
- * DIM. */
-static bool over_components(const char *s)
+/* Whether a loop that begins here is short, as over components: its head, up to the bracket that closes it, speaks
+ * of DIM, or has a bound of one digit. */
+static bool is_short(const char *s)
 {
     int depth = 0;
 
@@ -67,12 +67,15 @@ static bool over_components(const char *s)
             return false;
         if (strncmp(s, "DIM", 3) == 0 && !is_word(s[-1]) && !is_word(s[3]))
             return true;
+        const char *bound = s + 1 + strspn(s + 1, "= ");
+        if (*s == '<' && isdigit((unsigned char)*bound) && !is_word(bound[1]) && bound[1] != '.')
+            return true;
     }
     return false;
 }
 
-/* OpenCL C knows no vector of floats times a double: numbers get the suffix that makes them floats. Loops over
- * components are to be unrolled, so that arrays become registers: some compilers do so only if told. */
+/* OpenCL C knows no vector of floats times a double: numbers get the suffix that makes them floats. Short
+ * loops are to be unrolled, so that arrays become registers: some compilers do so only if told. */
 static void put_words_of(FILE *out, const char *s, bool in_floats)
 {
     while (*s) {
@@ -83,7 +86,7 @@ static void put_words_of(FILE *out, const char *s, bool in_floats)
         else if (!n)
             for (n = 1; is_word(s[0]) && is_word(s[n]);)
                 n++;
-        if (n == 3 && strncmp(s, "for", 3) == 0 && over_components(s))
+        if (n == 3 && strncmp(s, "for", 3) == 0 && is_short(s))
             fputs("SPH_UNROLLED ", out);
         fwrite(s, 1, n, out);
         if (real && in_floats)

@@ -372,7 +372,7 @@ static void put_steps(const struct sweep *s)
             "        for (uint sph_k = 0; sph_k < sph_count; sph_k++) {\n"
             "        const uint sph_at = sph_next%s;\n"
             "        const R r2 = sph_r2, r = sph_r, rinv = sph_rinv;\n"
-            "        R dx[DIM];\n        for (int sph_c = 0; sph_c < DIM; sph_c++)\n"
+            "        R dx[DIM];\n        SPH_UNROLLED for (int sph_c = 0; sph_c < DIM; sph_c++)\n"
             "            dx[sph_c] = sph_dx[sph_c];\n"
             "        const uint sph_after = sph_k + 1u < sph_count ? sph_k + 1u : sph_k;\n",
             s->steps == STEPS_TURNS ? ", sph_at2 = sph_next2" : "");

@@ -315,6 +315,10 @@ static void put_alone(struct kernel_text *t, bool begins)
 {
     if (begins) {
         fputs("    {\n#undef SPH_ISA\n#define SPH_ISA f64x1\n", t->out);
+        if (t->vectors)
+            fputs(
+                "#pragma clang loop vectorize(assume_safety) vectorize_width(8) interleave_count(1)\n",
+                t->out);
         fputs("    for (uint sph_l = 0; sph_l < sph_lanes; sph_l++) {\n"
               "    const ulong sph_o = sph_i + sph_l;\n",
               t->out);
@@ -440,8 +444,6 @@ static void put_kernel(struct kernel_text *t, enum kernel_part part)
     put_range(t);
     if (part == PART_ALL || part == PART_BEFORE) {
         if (s->n_head) {
-            if (!has_pairs(t))
-                fputs("#pragma clang loop vectorize(assume_safety)\n", t->out);
             put_alone(t, true);
             for (size_t k = 0; k < s->n_head; k++)
                 put_point(t, k, pass_point(text_pass(t, k)), "point");

@@ -55,8 +55,28 @@ static size_t number(const char *s, bool *real)
     return n;
 }
 
-/* OpenCL C knows no vector of floats times a double: numbers get the suffix that makes them floats. */
-static void put_floats(FILE *out, const char *s)
+/* Whether a loop that begins here is short, as over components: its head, up to the bracket that closes it, speaks
+ * of DIM, or has a bound of one digit. */
+static bool is_short(const char *s)
+{
+    int depth = 0;
+
+    for (s += 3 + strspn(s + 3, " \t\n"); *s; s++) {
+        depth += (*s == '(') - (*s == ')');
+        if (depth <= 0)
+            return false;
+        if (strncmp(s, "DIM", 3) == 0 && !is_word(s[-1]) && !is_word(s[3]))
+            return true;
+        const char *bound = s + 1 + strspn(s + 1, "= ");
+        if (*s == '<' && isdigit((unsigned char)*bound) && !is_word(bound[1]) && bound[1] != '.')
+            return true;
+    }
+    return false;
+}
+
+/* OpenCL C knows no vector of floats times a double: numbers get the suffix that makes them floats. Short
+ * loops are to be unrolled, so that arrays become registers: some compilers do so only if told. */
+static void put_words_of(FILE *out, const char *s, bool in_floats)
 {
     while (*s) {
         bool real = false;
@@ -66,8 +86,10 @@ static void put_floats(FILE *out, const char *s)
         else if (!n)
             for (n = 1; is_word(s[0]) && is_word(s[n]);)
                 n++;
+        if (n == 3 && strncmp(s, "for", 3) == 0 && is_short(s))
+            fputs("SPH_UNROLLED ", out);
         fwrite(s, 1, n, out);
-        if (real)
+        if (real && in_floats)
             fputc('f', out);
         s += n;
     }
@@ -79,10 +101,7 @@ static void put_text(FILE *out, const char *text, const char *file, bool in_floa
     for (const char *s = file ? file : "a body"; *s; s++)
         fprintf(out, *s == '"' || *s == '\\' ? "\\%c" : "%c", *s);
     fputs("\"\n", out);
-    if (in_floats)
-        put_floats(out, text);
-    else
-        fputs(text, out);
+    put_words_of(out, text, in_floats);
     fputs("\n#line 1 \"what sph wrote behind it\"\n", out);
 }
 

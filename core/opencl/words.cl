@@ -8,6 +8,7 @@
 #if defined(__clang__) && __clang_major__ >= 12
 #pragma clang fp contract(fast)
 #endif
+#define SPH_UNROLLED _Pragma("unroll")
 typedef uint uint32_t;
 typedef ulong uint64_t;
 typedef int int32_t;

@@ -12,7 +12,10 @@
 
 #if SPH_HAVE_OPENCL
 
+/* They are to stand before libOpenCL's. */
+#pragma GCC visibility push(default)
 #include <CL/cl.h>
+#pragma GCC visibility pop
 #include <dlfcn.h>
 #include <stdbool.h>
 #include <stdio.h>

@@ -1,14 +1,11 @@
-/* test_device.c -- an open device: memory, transfers, launches, times, programs and their cache, failures. What
+/* test_device.c -- an open device: memory, transfers, launches, times, programs, failures. What
  * is read in compilers' logs is tested everywhere; the rest skips itself where there is no device. Calls of
  * OpenCL go by way of tests/opencl/faults.c. */
 #include "config.h"
 
 #include "opencl/device.h"
-#include "opencl/device_cache.h"
 #include "opencl/device_log.h"
-#include "scratch.h"
 
-#include <dirent.h>
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -352,130 +349,7 @@ static void test_lost(void **state)
     lose("clWaitForEvents:1:-14", "fails to do what was asked of it: CL_EXEC_STATUS");
 }
 
-/* -- Cache -------- */
-
-/* Builds in a device of its own, which thus knows nothing of before; how, by counts. */
-static void build_again(const char *source, const char *options, unsigned cached, unsigned built)
-{
-    struct device *d;
-    struct device_program *p;
-    struct device_kernel *k;
-    unsigned c, b;
-
-    assert_int_equal(device_open(&d, 0, &e), 0);
-    assert_int_equal(device_build(d, &p, source, options, "test kernels", &e), 0);
-    assert_int_equal(device_kernel(d, p, "twice", NULL, &k, &e), 0);
-    assert_true(device_build_seconds(d, &c, &b) > 0);
-    assert_int_equal(c, cached);
-    assert_int_equal(b, built);
-    device_close(d);
-}
-
-/* The names of the files in a folder that is no other's, at most `room`. */
-static size_t files_in(const char *path, char name[][300], size_t room)
-{
-    DIR *dir = opendir(path);
-    struct dirent *entry;
-    size_t n = 0;
-
-    if (!dir)
-        return 0;
-    while ((entry = readdir(dir)))
-        if (entry->d_name[0] != '.') {
-            assert_true(n < room);
-            snprintf(name[n++], 300, "%s", entry->d_name);
-        }
-    closedir(dir);
-    return n;
-}
-
-static void test_cache(void **state)
-{
-    const char *dir = scratch_path(state, "of/the/cache");
-    char name[4][300], path[700], *before = getenv("SPH_CACHE_DIR");
-    char *kept, *data;
-    size_t n = 0;
-
-    before = before ? strdup(before) : NULL;
-    setenv("SPH_CACHE_DIR", dir, 1);
-    build_again(text, "", 0, 1);
-    build_again(text, NULL, 1, 0);
-    assert_int_equal(files_in(dir, name, 4), 1);
-    snprintf(path, sizeof(path), "%s/%s", dir, name[0]);
-    kept = scratch_read(path, &n);
-    data = malloc(n + 1);
-    assert_true(kept && data && n > 100);
-    /* A changed bit anywhere, a cut end, more than there was, nothing: built anew, and whole again. */
-    for (size_t k = 0; k < 9; k++) {
-        memcpy(data, kept, n);
-        data[k * (n - 1) / 8] ^= 4;
-        scratch_write(path, data, n);
-        build_again(text, "", 0, 1);
-        build_again(text, "", 1, 0);
-    }
-    scratch_write(path, kept, n - 1);
-    build_again(text, "", 0, 1);
-    data[n] = 0;
-    memcpy(data, kept, n);
-    scratch_write(path, data, n + 1);
-    build_again(text, "", 0, 1);
-    scratch_write(path, data, 0);
-    build_again(text, "", 0, 1);
-    /* Whole, and the driver will not have it. */
-    setenv("SPH_FAULT", "clCreateProgramWithBinary:1:-42", 1);
-    build_again(text, "", 0, 1);
-    setenv("SPH_FAULT", "clBuildProgram:1:-11", 1);
-    build_again(text, "", 0, 1);
-    unsetenv("SPH_FAULT");
-    /* Of another source, with other options. */
-    build_again(text, "-DOTHER", 0, 1);
-    assert_int_equal(files_in(dir, name, 4), 2);
-    free(kept);
-    free(data);
-    /* No folder can be there; none is wanted. */
-    scratch_write(scratch_path(state, "file"), "", 0);
-    setenv("SPH_CACHE_DIR", scratch_path(state, "file/folder"), 1);
-    build_again(text, "", 0, 1);
-    setenv("SPH_CACHE_DIR", "", 1);
-    build_again(text, "", 0, 1);
-    if (before)
-        setenv("SPH_CACHE_DIR", before, 1);
-    free(before);
-}
-
-/* More than there is room for: what was asked for last stays. */
-static void test_cache_room(void **state)
-{
-    enum { ENTRIES = 10, BYTES = 30 << 20 };
-    char name[20][300], *data = calloc(1, BYTES), *before = getenv("SPH_CACHE_DIR");
-    const char *dir = scratch_path(state, "full");
-    size_t n = 0;
-
-    assert_non_null(data);
-    before = before ? strdup(before) : NULL;
-    setenv("SPH_CACHE_DIR", dir, 1);
-    for (uint64_t k = 0; k < ENTRIES; k++) {
-        void *first;
-        cache_put(&(struct cache_key){{k, 1}}, data, BYTES);
-        first = cache_get(&(struct cache_key){{0, 1}}, &n);
-        assert_true(first && n == BYTES);
-        free(first);
-    }
-    assert_int_equal(files_in(dir, name, 20), (256 << 20) / (BYTES + 48));
-    assert_null(cache_get(&(struct cache_key){{1, 1}}, &n));
-    /* A full disk leaves nothing. */
-    scratch_limit(1 << 20);
-    cache_put(&(struct cache_key){{7, 7}}, data, BYTES);
-    scratch_limit(0);
-    assert_null(cache_get(&(struct cache_key){{7, 7}}, &n));
-    assert_int_equal(files_in(dir, name, 20), (256 << 20) / (BYTES + 48));
-    free(data);
-    if (before)
-        setenv("SPH_CACHE_DIR", before, 1);
-    else
-        unsetenv("SPH_CACHE_DIR");
-    free(before);
-}
+/* -- Rates -------- */
 
 static void test_measure(void **state)
 {
@@ -556,15 +430,15 @@ static void test_logs(void **state)
 
 static int open_it(void **state)
 {
-    if (scratch_setup(state))
-        return -1;
+    (void)state;
     return device_open(&device, 0, &e);
 }
 
 static int close_it(void **state)
 {
+    (void)state;
     device_close(device);
-    return scratch_teardown(state);
+    return 0;
 }
 
 int main(void)
@@ -575,8 +449,7 @@ int main(void)
         cmocka_unit_test(test_launch),        cmocka_unit_test(test_many_launches),
         cmocka_unit_test(test_mistakes),      cmocka_unit_test(test_build_errors),
         cmocka_unit_test(test_nothing_there), cmocka_unit_test(test_out_of_memory),
-        cmocka_unit_test(test_lost),          cmocka_unit_test(test_cache),
-        cmocka_unit_test(test_cache_room),    cmocka_unit_test(test_measure),
+        cmocka_unit_test(test_lost),          cmocka_unit_test(test_measure),
     };
     const int failed = cmocka_run_group_tests(logs, NULL, NULL);
     struct device *d;

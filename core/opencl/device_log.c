@@ -177,9 +177,11 @@ static bool take_apart(struct piece line, struct piece *place, struct piece *mes
 {
     const char *const word = find(line, "error");
     const char *const end = line.at + line.n;
-    const char *colon, *close;
+    const char *colon, *close, *after = word ? word + 5 : NULL;
 
-    if (!word)
+    while (word && after < end && *after == ' ')
+        after++;
+    if (!word || after == end || *after != ':')
         return false;
     *place = (struct piece){line.at, (size_t)(word - line.at)};
     *message = (struct piece){word + 5, (size_t)(end - word - 5)};
@@ -188,10 +190,8 @@ static bool take_apart(struct piece line, struct piece *place, struct piece *mes
     if (word > line.at) { /* "PLACE: error: ", "PLACE: fatal error: " */
         colon = find(*place, ": ");
         place->n = colon ? (size_t)(colon - line.at) : 0;
-        return word[5] == ':' || word[5] == ' ';
+        return true;
     }
-    if (word[5] != ':')
-        return false;
     colon = find(*message, ": ");
     close = find(*message, " <Spelling="); /* a macro's place */
     if (!colon)

@@ -10,6 +10,7 @@ from scenes import Scenes, changed, example
 
 scenes = Scenes()
 expect = scenes.expect
+ONLY = sys.argv[1:]  # precisions
 ON = ("--device", "opencl", "--device-only")
 
 done = scenes.command("info", "--devices")
@@ -24,6 +25,11 @@ def norm_of_difference(a, b):
     return off / scale if scale > 0 else off
 
 
+# What a stiff equation of state makes of a density that hardly changes is worse conditioned than forces are: by
+# rho c0^2 / p, some 1e4 in the drop.
+STIFF = {"p": 10, "p_rho2": 10}
+
+
 def compare(what, here, there, bar, columns=None):
     """Every real column of two snapshots in the norm; returns the largest difference."""
     worst, of = 0.0, ""
@@ -36,7 +42,8 @@ def compare(what, here, there, bar, columns=None):
         found = norm_of_difference(a[good], b[good]) if good.any() else 0.0
         if found > worst:
             worst, of = found, name
-        expect(f"{what}: {name}", found <= bar, f"{found:.2e} in the norm, bar {bar:.0e}")
+        most = bar * STIFF.get(name, 1)
+        expect(f"{what}: {name}", found <= most, f"{found:.2e} in the norm, bar {most:.0e}")
     print(f"{what}: {worst:.1e} in the norm ({of}; bar {bar:.0e})")
     return worst
 
@@ -92,9 +99,11 @@ def two_arrays(scheme):
     return scene
 
 
+# At rest and even, a wave's forces are 0 but for rounding: jitter gives it some.
 sod, noh, drop, wave, orbit = (quiet(example(f"{name}.json")) for name in ("sod", "noh", "drop", "wave", "orbit"))
 noh["particles"]["fluid"]["fill"]["spacing"] = 0.05
 drop["particles"]["drop"]["fill"]["spacing"] = 0.08
+wave["particles"]["gas"]["fill"]["jitter"] = 0.2
 noh3 = quiet(example("noh-3d.json"))
 noh3["particles"]["fluid"]["fill"] = {"lattice": "square", "spacing": 0.16}
 
@@ -129,6 +138,8 @@ for manager in ("boxes", "cells", "radix", "octree"):
 BARS = {"double": 1e-12, "mixed": 1e-5, "single": 2e-5}
 for name, scene in CASES.items():
     for precision, bar in BARS.items():
+        if ONLY and precision not in ONLY:
+            continue
         if precision != "double" and name.startswith(("kernel", "manager")):
             continue
         options = ("--precision", precision, "--steps", "1")

@@ -256,18 +256,6 @@ static void put_back(struct kernel_text *t, const struct pass *p, const sph_list
     }
 }
 
-/* Whether the body calls something of its own so. */
-static bool names(const sph_device_point *d, const char *name)
-{
-    const sph_list *const lists[] = {&d->in, &d->out, &d->inout, &d->param, &d->state};
-
-    for (size_t k = 0; k < sizeof(lists) / sizeof(lists[0]); k++)
-        for (uint32_t i = 0; i < lists[k]->count; i++)
-            if (strcmp(((const sph_device_value *)list_at(lists[k], i))->name, name) == 0)
-                return true;
-    return false;
-}
-
 /* The body of one particle, number sph_o. */
 static void put_point(struct kernel_text *t, size_t k, const sph_device_point *d, const char *role)
 {
@@ -281,7 +269,7 @@ static void put_point(struct kernel_text *t, size_t k, const sph_device_point *d
             "    {\n    #define sph_fail(k) "
             "atomic_cmpxchg(sph_failure, 0, %zu + (int)(k))\n",
             1 + FAILURES * t->shape->stage->pass[k] + first);
-    if (p->shape == SPH_PAIR && !names(d, "h"))
+    if (d->h)
         fprintf(t->out, "    const double h = sph_w%zu[%uul * sph_p%zu + sph_o];\n", p->dst.array,
                 t->arena[p->dst.array].place[a->smoothing].slot, p->dst.array);
     for (uint32_t i = 0; i < d->param.count; i++)

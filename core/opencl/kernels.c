@@ -76,7 +76,7 @@ static int build(struct kernels *k, int uniform, struct error *e)
     if (!k->kernel[uniform])
         return error_memory(e, "kernels", k->n * PART_COUNT);
     if (device_build(k->d, &k->program[uniform], k->text,
-                     uniform ? "-cl-std=CL1.2 -DSPH_UNIFORM=1" : "-cl-std=CL1.2",
+                     uniform ? "-cl-std=CL1.2 -w -DSPH_UNIFORM=1" : "-cl-std=CL1.2 -w",
                      "the scene's passes", e))
         return -1;
     return find_kernels(k, uniform, e);
@@ -166,6 +166,13 @@ int kernels_make(struct kernels **out, struct device *d, const struct plan *plan
                  const struct arena *arena, const struct stage *stage, size_t n_stage,
                  struct error *e)
 {
+    return kernels_make_as(out, d, plan, arena, stage, n_stage, device_facts(d)->cpu, e);
+}
+
+int kernels_make_as(struct kernels **out, struct device *d, const struct plan *plan,
+                    const struct arena *arena, const struct stage *stage, size_t n_stage,
+                    bool vectors, struct error *e)
+{
     struct kernels *k = calloc(1, sizeof(*k));
 
     *out = NULL;
@@ -173,7 +180,7 @@ int kernels_make(struct kernels **out, struct device *d, const struct plan *plan
         return error_memory(e, "kernels", sizeof(*k));
     k->d = d;
     k->plan = plan;
-    k->vectors = device_facts(d)->cpu;
+    k->vectors = vectors;
     if (make(k, arena, stage, n_stage, e)) {
         kernels_free(k);
         return -1;

@@ -115,7 +115,8 @@ static int measure(size_t number, int which, int dim, const char *precision, int
 
     scene_of(text, sizeof(text), which, dim, n);
     snprintf(what, sizeof(what), "%s %dD %s", scheme_name[which], dim, precision);
-    int status = on_device_open(&o, number, text, precision, 1, true, e);
+    const struct on_device_as as = {text, precision, 1, true, true, NULL};
+    int status = on_device_open(&o, number, &as, e);
     if (!status)
         q = calloc(o.n_stage + 1, sizeof(*q));
     for (size_t k = 0; q && k < o.n_stage; k++)

@@ -29,7 +29,7 @@ static void hold_plainly(struct plan *plan)
     }
 }
 
-static int make_plan(struct on_device *o, const char *precision, struct error *e)
+static int make_plan(struct on_device *o, const struct on_device_as *as, struct error *e)
 {
     if (document_parse(&o->document, "scene.json", o->text, strlen(o->text), e))
         return -1;
@@ -37,13 +37,15 @@ static int make_plan(struct on_device *o, const char *precision, struct error *e
     if (scene_compile(&o->scene, &o->document, e))
         return -1;
     o->has_scene = true;
-    o->scene.precision = precision;
+    o->scene.precision = as->precision;
     if (registry_init(&o->registry, e))
         return -1;
     o->has_registry = true;
     for (size_t i = 0; i < o->scene.n_plugin; i++)
         if (loader_load(&o->registry, o->scene.plugin[i], e))
             return -1;
+    if (as->entry && registry_add(&o->registry, "/test/test.so", as->entry, NULL, NULL, e))
+        return -1;
     o->has_plan = true;
     if (plan_make(&o->plan, &o->registry, &o->scene, false, e))
         return -1;
@@ -60,15 +62,15 @@ static int run_natively(struct on_device *o, int threads, struct error *e)
     return run_passes(&o->run, MOMENT_START, e) || run_passes(&o->run, MOMENT_EVALUATE, e) ? -1 : 0;
 }
 
-int on_device_open(struct on_device *o, size_t number, const char *scene, const char *precision,
-                   int threads, bool fuse, struct error *e)
+int on_device_open(struct on_device *o, size_t number, const struct on_device_as *as,
+                   struct error *e)
 {
-    *o = (struct on_device){.text = strdup(scene)};
+    *o = (struct on_device){.text = strdup(as->scene)};
     if (!o->text)
-        return error_memory(e, "a scene", strlen(scene));
+        return error_memory(e, "a scene", strlen(as->scene));
     for (char *s = o->text; *s; s++)
         *s = *s == '\'' ? '"' : *s;
-    if (make_plan(o, precision, e) || run_natively(o, threads, e) || device_open(&o->d, number, e))
+    if (make_plan(o, as, e) || run_natively(o, as->threads, e) || device_open(&o->d, number, e))
         return -1;
     o->arena = calloc(o->plan.n_array + 1, sizeof(*o->arena));
     o->list = calloc(o->plan.n_list + 1, sizeof(*o->list));
@@ -77,8 +79,9 @@ int on_device_open(struct on_device *o, size_t number, const char *scene, const 
     for (size_t a = 0; a < o->plan.n_array; a++)
         if (arena_init(&o->arena[a], o->d, &o->plan.array[a].p, e))
             return -1;
-    return stages_plan(&o->plan, MOMENT_EVALUATE, fuse, &o->stage, &o->n_stage, e) ||
-                   kernels_make(&o->kernels, o->d, &o->plan, o->arena, o->stage, o->n_stage, e)
+    return stages_plan(&o->plan, MOMENT_EVALUATE, as->fuse, &o->stage, &o->n_stage, e) ||
+                   kernels_make_as(&o->kernels, o->d, &o->plan, o->arena, o->stage, o->n_stage,
+                                   as->vectors, e)
                ? -1
                : 0;
 }
@@ -125,9 +128,8 @@ static int put_column(struct on_device *o, size_t array, int k, struct error *e)
                          (at->slot + q) * a->plane * c->size,
                          (const char *)c->data + q * c->plane * c->size, n * c->size, e))
             return -1;
-        if (c->mirror &&
-            device_write(o->d, &a->narrow, ((uint32_t)at->mirror + q) * a->plane * 4,
-                         (const char *)c->mirror + q * c->plane * 4, n * 4, e))
+        if (c->mirror && device_write(o->d, &a->narrow, ((uint32_t)at->mirror + q) * a->plane * 4,
+                                      (const char *)c->mirror + q * c->plane * 4, n * 4, e))
             return -1;
     }
     return 0;
@@ -225,6 +227,8 @@ int on_device_stage(struct on_device *o, size_t k, struct error *e)
     struct kernel_now now = on_device_now(o);
     bool again = true;
 
+    if (kernels_update(o->kernels, e))
+        return -1;
     for (now.sweep = 0; again; now.sweep++) {
         if (kernels_launch(o->kernels, k, o->arena, o->list, &now, e))
             return -1;
@@ -235,19 +239,27 @@ int on_device_stage(struct on_device *o, size_t k, struct error *e)
     return 0;
 }
 
+int on_device_fetch(struct on_device *o, struct error *e)
+{
+    for (size_t a = 0; a < o->plan.n_array; a++) {
+        const struct arena *arena = &o->arena[a];
+        for (size_t k = 0; k < arena->p->n_column; k++) {
+            const struct column *c = &arena->p->column[k];
+            for (uint32_t q = 0; q < c->ncomp; q++)
+                if (device_read(o->d, c->size == 8 ? &arena->wide : &arena->narrow,
+                                (arena->place[k].slot + q) * arena->plane * c->size,
+                                (char *)c->data + q * c->plane * c->size, arena->n * c->size, e))
+                    return -1;
+            run_changed(&o->run, a, (int)k);
+        }
+    }
+    return 0;
+}
+
 int on_device_run(struct on_device *o, struct error *e)
 {
     for (size_t k = 0; k < o->n_stage; k++)
-        if (on_device_stage(o, k, e))
+        if (on_device_put(o, e) || on_device_stage(o, k, e) || on_device_fetch(o, e))
             return -1;
-    return device_finish(o->d, e);
-}
-
-int on_device_get(struct on_device *o, size_t array, int column, uint32_t c, double *out,
-                  struct error *e)
-{
-    const struct arena *a = &o->arena[array];
-
-    return device_read(o->d, &a->wide, (a->place[column].slot + c) * a->plane * sizeof(double), out,
-                       a->n * sizeof(double), e);
+    return 0;
 }

@@ -34,6 +34,8 @@ static bool there;
     "'plugins':['kernels','eos','wcsph','barotropic','forces','diagnostics'],'materials':{'m':{'eos':{'name':'tait','rho0':1,'c0':10}}},"
 #define GAS                                                                                        \
     "'plugins':['kernels','eos','gsph'],'materials':{'m':{'eos':{'name':'ideal-gas','gamma':1.4}}},"
+#define SOFT                                                                                       \
+    "'plugins':['kernels','eos','barotropic'],'materials':{'m':{'eos':{'name':'linear','rho0':1,'c0':10}}},"
 #define OF_WATER "'rho':'1 + 0.02 * sin(5 * x)'"
 #define H "'h':'1.3 * spacing'"
 #define H_VARIES "'h':'1.3 * spacing * (1 + 0.2 * sin(6 * x))'"
@@ -82,11 +84,11 @@ static const struct trial_scene scenes[] = {
      0, 0},
     {"barotropic 2D",
      "{" SQUARE
-     "}," WATER FLUID(FILL(900), OF_WATER
-                      "," H "," V2) "'kernel':'cubic-spline','scheme':{'name':'barotropic'}," END,
+     "}," SOFT FLUID(FILL(900), OF_WATER
+                     "," H "," V2) "'kernel':'cubic-spline','scheme':{'name':'barotropic'}," END,
      0, 0},
     {"barotropic 3D, a tabulated kernel",
-     "{" CUBE "}," WATER FLUID(
+     "{" CUBE "}," SOFT FLUID(
          FILL(1000), OF_WATER
          "," H "," V3) "'kernel':'gaussian','scheme':{'name':'barotropic-continuity'}," END,
      0, 0},
@@ -252,6 +254,8 @@ static void test_scenes(void **state)
         skip();
     for (size_t k = 0; k < N_SCENES; k++)
         for (int form = 0; form < 4; form++) {
+            if (form >= 2 && (size_t)form % 2 != k % 2)
+                continue;
             /* With vectors as a run does it; a work item a destination, and a pass a stage. */
             const struct on_device_as as = {
                 scenes[k].scene, form % 2 ? "mixed" : "double", 1, form < 2, form < 2,

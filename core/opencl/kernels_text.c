@@ -29,7 +29,9 @@ const sph_device_point *pass_after(const struct pass *p)
 
 const sph_device_point *pass_point(const struct pass *p)
 {
-    if (p->shape == SPH_PAIR || p->assignment)
+    if (p->assignment)
+        return assignment_device(p->assignment);
+    if (p->shape == SPH_PAIR)
         return NULL;
     return p->function ? p->function->device_run : entry_eos(p->use.entry)->device;
 }

@@ -214,6 +214,8 @@ bool stages_can(const struct plan *plan, const struct pass *p, char *why, size_t
     const struct entry *entry = p->use.entry;
     const char *lacks = NULL;
 
+    if (p->assignment && assignment_device(p->assignment))
+        return true;
     if (p->assignment) {
         snprintf(why, size, "the expression of \"%s\" is computed on the processor", p->step);
         return false;

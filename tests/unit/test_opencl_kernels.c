@@ -108,6 +108,15 @@ static const struct trial_scene scenes[] = {
      "{" CUBE "}," GAS FLUID(FILL(1331), OF_GAS
                              "," V3) "'kernel':'quartic-spline','scheme':{'name':'gsph'}," END,
      0, 0.98},
+    {"expressions",
+     "{" SQUARE "}," WATER "'particles':{'fluid':{'material':'m'," FILL(
+         700) ",'columns':{'twice':0,'label':{'type':'int32','value':7}},"
+              "'fields':{" OF_WATER "," H_VARIES "," V2 "}}},"
+              "'scheme':{'name':'wcsph','edit':["
+              "{'operation':'assignment','of':'twice','expression':'max(rho, x^2, 1) * (x < 0.5 ? sin(9 * y) : "
+              "-sqrt(r + t)) + !(y > 0.3)'},"
+              "{'operation':'assignment','of':'label','expression':'9 * twice - 3 * (y > x & m < 1)'}]}," END,
+     0, 0},
     {"all that a pass may have",
      "{" SQUARE ",'sides':{'x':'periodic'}}," WATER FLUID(
          FILL(700), OF_WATER

@@ -131,7 +131,10 @@ int arena_put(struct arena *a, int column, struct error *e)
     const struct arena_place *at = &a->place[column];
     if (a->n != a->p->n && arena_resize(a, a->p->n, 0, e))
         return -1;
-    for (uint32_t k = 0; a->n && k < c->ncomp; k++)
+    if (a->here[column])
+        return 0;
+    /* Where neither is right, somebody is about to make it anew. */
+    for (uint32_t k = 0; a->there[column] && a->n && k < c->ncomp; k++)
         if (device_write(a->d, buffer_of(a, at->size), (at->slot + k) * a->plane * at->size,
                          (const char *)c->data + k * c->plane * c->size, a->n * c->size, e))
             return -1;
@@ -145,7 +148,9 @@ int arena_get(struct arena *a, int column, struct error *e)
     const struct arena_place *at = &a->place[column];
     if (a->p->n != a->n && particles_resize(a->p, a->n, 0, e))
         return -1;
-    for (uint32_t k = 0; a->n && k < c->ncomp; k++)
+    if (a->there[column])
+        return 0;
+    for (uint32_t k = 0; a->here[column] && a->n && k < c->ncomp; k++)
         if (device_read(a->d, buffer_of(a, at->size), (at->slot + k) * a->plane * at->size,
                         (char *)c->data + k * c->plane * c->size, a->n * c->size, e))
             return -1;

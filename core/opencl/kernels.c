@@ -107,7 +107,7 @@ static int check(const struct kernels *k, size_t i, struct error *e)
     char why[256];
 
     for (size_t q = 0; q < s->n; q++)
-        if (!stages_can(k->plan, &k->plan->pass[s->pass[q]], why, sizeof(why)))
+        if (!pass_on_device(k->plan, &k->plan->pass[s->pass[q]], why, sizeof(why)))
             return error_set(e, EXIT_REFUSED, "%s", why);
     return 0;
 }

@@ -362,16 +362,17 @@ static void put_reset(struct kernel_text *t, size_t k)
         if (!(prop->access & SUMS) || p->continues[i])
             continue;
         const int column = p->dst.column[i];
-        for (uint32_t c = 0; c < t->plan->array[a].p.column[column].ncomp; c++)
+        const struct arena_place *place = &t->arena[a].place[column];
+        for (uint32_t c = 0; c < t->plan->array[a].p.column[column].ncomp; c++) {
+            fprintf(t->out,
+                    "    for (uint sph_l = 0; sph_l < sph_lanes; sph_l++)\n"
+                    "        sph_%c%zu[%uul * sph_p%zu + sph_i + sph_l] = ",
+                    place->size == 8 ? 'w' : 'n', a, place->slot + c, a);
             if (isinf(prop->start))
-                fprintf(
-                    t->out,
-                    "    sph_start(sph_w%zu + %uul * sph_p%zu + sph_i, %sINFINITY, sph_lanes);\n",
-                    a, t->arena[a].place[column].slot + c, a, prop->start < 0 ? "-" : "");
+                fprintf(t->out, "%sINFINITY;\n", prop->start < 0 ? "-" : "");
             else
-                fprintf(t->out,
-                        "    sph_start(sph_w%zu + %uul * sph_p%zu + sph_i, %a, sph_lanes);\n", a,
-                        t->arena[a].place[column].slot + c, a, prop->start);
+                fprintf(t->out, place->size == 8 ? "%a;\n" : "(float)%a;\n", prop->start);
+        }
     }
 }
 
@@ -456,6 +457,8 @@ static void put_kernel(struct kernel_text *t, enum kernel_part part)
     put_head(t, part);
     put_range(t);
     if (part == PART_ALL || part == PART_BEFORE) {
+        for (size_t k = 0; k < s->n_head; k++)
+            put_reset(t, k);
         if (s->n_head) {
             put_alone(t, true);
             for (size_t k = 0; k < s->n_head; k++)
@@ -479,6 +482,8 @@ static void put_kernel(struct kernel_text *t, enum kernel_part part)
             put_sums(t, k);
         if (part == PART_ALL || part == PART_AFTER) {
             put_one_alone(t, k, pass_after(text_pass(t, k)), "after");
+            if (pass_point(text_pass(t, k)))
+                put_reset(t, k);
             put_one_alone(t, k, pass_point(text_pass(t, k)), "point");
         }
     }

@@ -154,6 +154,7 @@ struct plan {
     struct plan_list *list;
     size_t n_list;
     enum precision precision;
+    bool on_device;                          /* runs on the scene's OpenCL device */
     const struct neighbour_manager *manager; /* NULL: as it suits */
     double skin;                             /* of neighbour lists, a fraction of the support */
     double reach_scale;                      /* largest over the functions */
@@ -181,6 +182,10 @@ size_t plan_bytes(const struct plan *plan, size_t array);
 /* Columns of array a that a pass reads from it, writes in it. */
 bool pass_writes(const struct pass *p, size_t array, int column);
 bool pass_reads_source(const struct pass *p, size_t array, int column);
+
+/* Whether the pass can run on a device; else *why is what lacks: "function "x" of plugin "y" has no device
+ * body" (backend.c). */
+bool pass_on_device(const struct plan *plan, const struct pass *p, char *why, size_t size);
 
 /* Whether anything changes the column as the run goes on: a pass, or the integrator. */
 bool plan_changes(const struct plan *plan, size_t array, int column);

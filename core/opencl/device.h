@@ -25,10 +25,12 @@ struct device_facts {
     size_t group_most; /* work items of a work group */
 };
 
-/* `number` as `sph info --devices` counts. */
+/* `number` as `sph info --devices` counts. None there, or none of that number: EXIT_USAGE. */
 int device_open(struct device **out, size_t number, struct error *e);
 void device_close(struct device *d); /* NULL: nothing */
 const struct device_facts *device_facts(const struct device *d);
+/* -1 with EXIT_USAGE for a device without double precision. */
+int device_need_fp64(const struct device *d, struct error *e);
 
 /* -- Memory -------- */
 
@@ -108,7 +110,7 @@ int device_finish(struct device *d, struct error *e);
 
 /* -- Time -------- */
 
-/* By the device's own events: what kernels of one name took. Transfers are "read", "write", "copy". */
+/* By the device's own events: what kernels of one name took. Transfers are "read", "write", "copy", "fill". */
 struct device_time {
     const char *name; /* the device's */
     double seconds;

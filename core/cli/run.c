@@ -2,6 +2,7 @@
 #include "cli/cli.h"
 #include "cli/scene_options.h"
 #include "domain/ranks.h"
+#include "plan/bodies.h"
 #include "run/loop.h"
 #include <errno.h>
 #include <math.h>
@@ -221,7 +222,7 @@ static int run_or_show(const struct arguments *a, const char *folder, struct res
     if (!status && !resume && (a->dry || a->verbose))
         plan_print(&l.plan, stdout);
     if (!status && !a->dry)
-        status = run(a, &l, folder, resume, e);
+        status = bodies_need_device(&l.plan, e) || run(a, &l, folder, resume, e);
     loaded_free(&l);
     return status;
 }

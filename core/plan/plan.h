@@ -154,6 +154,7 @@ struct plan {
     struct plan_list *list;
     size_t n_list;
     enum precision precision;
+    bool on_device;                          /* runs on the scene's OpenCL device */
     const struct neighbour_manager *manager; /* NULL: as it suits */
     double skin;                             /* of neighbour lists, a fraction of the support */
     double reach_scale;                      /* largest over the functions */

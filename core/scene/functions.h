@@ -66,4 +66,7 @@ struct scene_function {
     size_t n_reduction;
 };
 
+/* Whether the body's text has the name, as far as can be told: with macros of its own it may. */
+bool scene_body_uses(const struct scene_body *b, const char *name);
+
 #endif

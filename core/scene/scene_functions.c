@@ -131,7 +131,9 @@ static int add_value(struct scene *s, const cJSON *item, const char *name, enum 
                                  "not beginning with sph_",
                                  name);
     struct scene_value v = {item, name ? name : item->valuestring, item->valuestring};
-    if (scene_is_taken(v.name, list == LIST_I || list == LIST_J))
+    /* Of a point function h is a property like any other. */
+    const bool plain = !strcmp(v.name, "h") && json_get(b->node, "name") && list >= LIST_IN;
+    if (!plain && scene_is_taken(v.name, list == LIST_I || list == LIST_J))
         return document_fail(s->doc, item, e,
                              "the body has another \"%s\" already: give this one a name of its "
                              "own, {\"my_%s\": \"%s\"}",
@@ -168,6 +170,35 @@ static int compile_list(struct scene *s, const cJSON *node, enum scene_list list
     return 0;
 }
 
+bool scene_body_uses(const struct scene_body *b, const char *name)
+{
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
+    const size_t n = strlen(name);
+    if (b->prelude || strstr(b->text, "##"))
+        return true;
+    for (const char *at = b->text; (at = strstr(at, name)) != NULL; at += n)
+        if ((at == b->text || !strchr(letters, at[-1])) && (!at[n] || !strchr(letters, at[n])))
+            return true;
+    return false;
+}
+
+/* What a body does not name it does not read: a slip of the pen. */
+static int check_used(const struct scene *s, const struct scene_body *b, struct error *e)
+{
+    for (int l = 0; l < LISTS; l++)
+        for (size_t k = 0; k < b->n_value[l]; k++) {
+            const struct scene_value *v = &b->value[l][k];
+            const char *side = l == LIST_I ? "_i" : l == LIST_J ? "_j" : "";
+            char name[80];
+            snprintf(name, sizeof name, "%s%s", v->name, side);
+            if (!scene_body_uses(b, name))
+                return document_fail(s->doc, v->node, e,
+                                     "%s does not use \"%s\": leave it out of \"%s\"", b->file,
+                                     name, scene_list_key[l]);
+        }
+    return 0;
+}
+
 static int compile_body(struct scene *s, const cJSON *node, struct scene_body *b, struct error *e)
 {
     b->node = node;
@@ -178,7 +209,7 @@ static int compile_body(struct scene *s, const cJSON *node, struct scene_body *b
     for (int l = 0; l < LISTS; l++)
         if (compile_list(s, node, (enum scene_list)l, b, e) < 0)
             return -1;
-    return 0;
+    return check_used(s, b, e);
 }
 
 /* Member `key` of a pair function: a body of one particle. */

@@ -101,6 +101,12 @@ static int load(struct loaded *l, const struct scene_options *o, struct error *e
     return bodies_register(&l->registry, &l->scene, e);
 }
 
+int loaded_open(struct loaded *l, const struct scene_options *o, struct error *e)
+{
+    *l = (struct loaded){0};
+    return load(l, o, e);
+}
+
 int loaded_make(struct loaded *l, const struct scene_options *o, bool guarded, struct error *e)
 {
     *l = (struct loaded){0};

@@ -107,7 +107,7 @@ static const struct scene_property *own_words(const struct scene_function *f, co
 
 /* -- Properties ------------------------------------------------------------------------------ */
 
-/* What a list says of the access, of one particle (`alone`) or of a pair. */
+/* What a list says of the access; `behind`: in "before" or "after" of a pair function. */
 static uint32_t access_of(enum scene_list list, const sph_prop *p, bool behind)
 {
     switch (list) {
@@ -121,13 +121,13 @@ static uint32_t access_of(enum scene_list list, const sph_prop *p, bool behind)
         return SPH_DST_MIN;
     case LIST_MAX:
         return SPH_DST_MAX;
+    /* Behind the pairs, what they and `before` set is there, and may be changed: it is a sum all the same. */
     case LIST_IN:
-        return SPH_DST_READ;
-    /* What the pairs add up may be changed behind them: it is a sum all the same. */
+        return behind && (p->access & SETS) ? 0 : SPH_DST_READ;
     case LIST_OUT:
         return behind && (p->access & SETS) ? 0 : SPH_DST_WRITE;
     case LIST_INOUT:
-        return SPH_DST_READ | (behind && (p->access & SETS) ? 0 : SPH_DST_WRITE);
+        return behind && (p->access & SETS) ? 0 : SPH_DST_READ | SPH_DST_WRITE;
     case LISTS:
         break;
     }
@@ -167,18 +167,17 @@ static int add_values(struct made *m, const struct scene_body *b, struct lists *
         return error_memory(e, "a function of the scene", m->from->n_param);
     for (size_t k = 0; b->node && k < m->from->n_param; k++)
         if (scene_body_uses(b, m->from->param[k].name))
-            out->param[out->n_param++] =
-                (sph_device_value){m->from->param[k].name, (uint32_t)k, 0};
+            out->param[out->n_param++] = (sph_device_value){m->from->param[k].name, (uint32_t)k, 0};
     return 0;
 }
 
 static double start_of(const sph_prop *p, const sph_prop *known, bool read)
 {
-    return p->access & SPH_DST_MIN           ? INFINITY
-           : p->access & SPH_DST_MAX         ? -INFINITY
-           : p->access & SETS                ? 0
-           : known->type && read             ? known->start
-                                             : NAN;
+    return p->access & SPH_DST_MIN   ? INFINITY
+           : p->access & SPH_DST_MAX ? -INFINITY
+           : p->access & SETS        ? 0
+           : known->type && read     ? known->start
+                                     : NAN;
 }
 
 /* Type, unit, words and start of property i. */

@@ -31,9 +31,9 @@ struct scene_value {
 };
 
 struct scene_body {
-    const cJSON *node;                         /* for messages; NULL: there is no such body */
-    const char *file, *text;                   /* as it was opened, so that an editor finds it */
-    const char *prelude_file, *prelude;        /* or NULL */
+    const cJSON *node;                  /* for messages; NULL: there is no such body */
+    const char *file, *text;            /* as it was opened, so that an editor finds it */
+    const char *prelude_file, *prelude; /* or NULL */
     struct scene_value *value[LISTS];
     size_t n_value[LISTS];
     const char **fail; /* sentences of sph_fail; of one particle */

@@ -409,8 +409,7 @@ static int compile(struct scene *s, const cJSON *root, struct error *e)
     static const char *const keys[] = {
         "$schema",   "title",      "dimensions", "plugins",  "units",  "domain", "materials",
         "particles", "boundaries", "scheme",     "kernel",   "time",   "limits", "neighbours",
-        "precision", "compare",    "probes",     "profiles", "output", "watch",
-        "functions"};
+        "precision", "compare",    "probes",     "profiles", "output", "watch",  "functions"};
     if (!root->child)
         return document_fail(s->doc, root, e, "the scene is empty");
     if (json_keys(s->doc, root, keys, COUNT(keys), e) < 0 || compile_head(s, root, e) < 0 ||

@@ -205,7 +205,7 @@ struct scene_watch {
 };
 
 struct scene_function; /* functions.h */
-struct scene_memory; /* what the structures stand in: private to scene.c */
+struct scene_memory;   /* what the structures stand in: private to scene.c */
 
 struct scene {
     struct document *doc; /* not owned; outlives the scene */

@@ -47,12 +47,11 @@ static int compile_property(struct scene *s, const cJSON *node, struct scene_pro
     *p = (struct scene_property){.node = node, .name = node->string, .start = INFINITY};
     if (check_name(s, node, e) < 0)
         return -1;
-    if (!cJSON_IsString(node) &&
-        (json_keys(s->doc, node, keys, COUNT(keys), e) < 0 ||
-         json_string(s->doc, node, "unit", false, &p->unit, e) < 0 ||
-         json_string(s->doc, node, "doc", false, &p->doc, e) < 0 ||
-         json_number(s->doc, node, "start", false, &p->start, e) < 0 ||
-         json_bool(s->doc, node, "work", false, &p->work, e) < 0))
+    if (!cJSON_IsString(node) && (json_keys(s->doc, node, keys, COUNT(keys), e) < 0 ||
+                                  json_string(s->doc, node, "unit", false, &p->unit, e) < 0 ||
+                                  json_string(s->doc, node, "doc", false, &p->doc, e) < 0 ||
+                                  json_number(s->doc, node, "start", false, &p->start, e) < 0 ||
+                                  json_bool(s->doc, node, "work", false, &p->work, e) < 0))
         return -1;
     for (size_t i = 0; cJSON_IsString(type) && i < COUNT(type_words); i++)
         if (!strcmp(type->valuestring, type_words[i]))
@@ -60,8 +59,8 @@ static int compile_property(struct scene *s, const cJSON *node, struct scene_pro
     if (type && !p->type)
         return document_fail(s->doc, type, e, "unknown type %s%s", json_brief(type, brief),
                              text_suggest(hint, sizeof hint,
-                                          cJSON_IsString(type) ? type->valuestring : "",
-                                          type_words, COUNT(type_words)));
+                                          cJSON_IsString(type) ? type->valuestring : "", type_words,
+                                          COUNT(type_words)));
     return 0;
 }
 
@@ -80,7 +79,8 @@ static int compile_properties(struct scene *s, const cJSON *node, struct scene_f
 {
     const cJSON *item;
     void *list = NULL;
-    if (begin(s, node, "properties by name, {\"q\": \"scalar\"}", sizeof *f->property, &list, e) < 0)
+    if (begin(s, node, "properties by name, {\"q\": \"scalar\"}", sizeof *f->property, &list, e) <
+        0)
         return -1;
     f->property = list;
     cJSON_ArrayForEach(item, node)
@@ -89,9 +89,8 @@ static int compile_properties(struct scene *s, const cJSON *node, struct scene_f
             return -1;
         if (!body_has(&f->run, item->string) && !body_has(&f->before, item->string) &&
             !body_has(&f->after, item->string))
-            return document_fail_key(s->doc, item, e,
-                                     "no list of the function has the property \"%s\"",
-                                     item->string);
+            return document_fail_key(
+                s->doc, item, e, "no list of the function has the property \"%s\"", item->string);
         f->n_property++;
     }
     return 0;
@@ -108,9 +107,9 @@ static int compile_parameter(struct scene *s, const cJSON *node, sph_param *p, s
     if (check_name(s, node, e) < 0)
         return -1;
     if (scene_is_taken(node->string, false))
-        return document_fail_key(s->doc, node, e,
-                                 "the body has another \"%s\" already: call the parameter otherwise",
-                                 node->string);
+        return document_fail_key(
+            s->doc, node, e, "the body has another \"%s\" already: call the parameter otherwise",
+            node->string);
     if (cJSON_IsNumber(node) && isfinite(node->valuedouble)) {
         p->def = node->valuedouble;
         return 0;

@@ -12,8 +12,7 @@
 /* Of a body's file [bytes]. */
 #define BODY_MOST ((size_t)1 << 20)
 
-const char *const scene_list_key[LISTS] = {"i",   "j",  "sum", "min",
-                                           "max", "in", "out", "inout"};
+const char *const scene_list_key[LISTS] = {"i", "j", "sum", "min", "max", "in", "out", "inout"};
 
 /* -- Files ----------------------------------------------------------------------------------- */
 
@@ -28,8 +27,7 @@ static char *read_text(struct scene *s, const char *path, size_t *n, struct erro
     else if (!S_ISREG(about.st_mode))
         error_set(e, EXIT_USAGE, "is no file");
     else if ((size_t)about.st_size > BODY_MOST)
-        error_set(e, EXIT_USAGE, "is larger than %zu KiB; a body is a short text",
-                  BODY_MOST >> 10);
+        error_set(e, EXIT_USAGE, "is larger than %zu KiB; a body is a short text", BODY_MOST >> 10);
     else
         text = scene_alloc(s, (size_t)about.st_size + 1, 1, e);
     if (text) {
@@ -93,7 +91,8 @@ static int read_member(struct scene *s, const cJSON *node, const char *key, bool
 
 bool scene_is_identifier(const char *name)
 {
-    const size_t n = strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_");
+    const size_t n =
+        strspn(name, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_");
     return n > 0 && n < 64 && !name[n] && name[0] != '_' && !(name[0] >= '0' && name[0] <= '9') &&
            strncmp(name, "sph_", 4) != 0 && strncmp(name, "SPH_", 4) != 0;
 }
@@ -141,7 +140,8 @@ static int add_value(struct scene *s, const cJSON *item, const char *name, enum 
     for (int l = 0; l < LISTS; l++)
         for (size_t k = 0; k < b->n_value[l]; k++)
             if (!strcmp(b->value[l][k].name, v.name) &&
-                (l == (int)list || (l != LIST_I && l != LIST_J && list != LIST_I && list != LIST_J)))
+                (l == (int)list ||
+                 (l != LIST_I && l != LIST_J && list != LIST_I && list != LIST_J)))
                 return document_fail(s->doc, item, e, "\"%s\" is named in \"%s\" already", v.name,
                                      scene_list_key[l]);
     b->value[list][b->n_value[list]++] = v;
@@ -221,8 +221,9 @@ static int compile_point(struct scene *s, const cJSON *function, const char *key
     if (!node)
         return 0;
     if (!cJSON_IsObject(node))
-        return document_fail(s->doc, node, e,
-                             "give an object with \"body\" and the lists \"in\", \"out\", \"inout\"");
+        return document_fail(
+            s->doc, node, e,
+            "give an object with \"body\" and the lists \"in\", \"out\", \"inout\"");
     return json_keys(s->doc, node, keys, COUNT(keys), e) < 0 ? -1 : compile_body(s, node, b, e);
 }
 
@@ -284,12 +285,13 @@ static int compile_pair(struct scene *s, const cJSON *node, struct scene_functio
 static int check_keys(struct scene *s, const cJSON *node, uint32_t shape, struct error *e)
 {
     static const char *const pair_keys[] = {
-        "name", "doc",         "source", "shape",      "dimensions", "body",  "prelude",   "i",
-        "j",    "sum",         "min",    "max",        "reach",      "self",  "reach_scale", "floats",
-        "before", "after", "properties", "parameters", "rates", "reductions"};
+        "name",       "doc",        "source",      "shape",     "dimensions", "body",
+        "prelude",    "i",          "j",           "sum",       "min",        "max",
+        "reach",      "self",       "reach_scale", "floats",    "before",     "after",
+        "properties", "parameters", "rates",       "reductions"};
     static const char *const point_keys[] = {
-        "name", "doc", "source", "shape", "dimensions", "body",  "prelude",
-        "in",   "out", "inout",  "sum",   "fail",       "properties", "parameters", "rates", "reductions"};
+        "name", "doc",   "source", "shape", "dimensions", "body",       "prelude", "in",
+        "out",  "inout", "sum",    "fail",  "properties", "parameters", "rates",   "reductions"};
     return shape == SPH_PAIR ? json_keys(s->doc, node, pair_keys, COUNT(pair_keys), e)
                              : json_keys(s->doc, node, point_keys, COUNT(point_keys), e);
 }

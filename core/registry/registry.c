@@ -539,3 +539,17 @@ void registry_reason(struct registry *r, sph_status status, char *out, size_t si
     r->last.text[0] = '\0';
     pthread_mutex_unlock(&g->mutex);
 }
+
+bool entry_on_device(const struct entry *x)
+{
+    const sph_function *f;
+
+    if (x->kind == KIND_EOS)
+        return entry_eos(x)->device != NULL;
+    if (x->kind != KIND_FUNCTION)
+        return true;
+    f = entry_function(x);
+    if (f->shape == SPH_POINT)
+        return f->device_run != NULL;
+    return f->device && (!f->before || f->device_before) && (!f->after || f->device_after);
+}

@@ -129,6 +129,10 @@ static inline const sph_life *entry_life(const struct entry *x)
                                     : NULL;
 }
 
+/* Whether it has bodies for a device in place of all that it does there: a function or an equation of
+ * state. Of other kinds: true, for there is nothing of theirs to run. */
+bool entry_on_device(const struct entry *x);
+
 /* Element i of a list of the ABI, whatever its stride. */
 static inline const void *list_at(const sph_list *l, uint32_t i)
 {

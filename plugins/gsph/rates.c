@@ -59,8 +59,7 @@ static const sph_prop props[] = {
 #define SPH_POINT_LOOP finish
 #define SPH_POINT_IN(P_)                                                                           \
     P_(scalar, cs, CS)                                                                             \
-    P_(vector, v, V) P_(vector, force, FORCE) P_(scalar, power, POWER)                             \
-        P_(scalar, fastest, FASTEST)
+    P_(vector, v, V) P_(vector, force, FORCE) P_(scalar, power, POWER) P_(scalar, fastest, FASTEST)
 #define SPH_POINT_INOUT(P_) P_(vector, a, A)
 #define SPH_POINT_OUT(P_) P_(scalar, du, DU) P_(scalar, dt, DT)
 #define SPH_POINT_H

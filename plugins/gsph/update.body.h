@@ -1,6 +1,6 @@
 /* update.body.h -- of one particle, from the sums to the next h. One that is done keeps its h, so that its sums
  * stay right. */
-const R self = m * own * sph_pow(h, -(R)DIM), fitting = m * sph_pow(eta / h, (R)DIM);
+const R self = m * own * sph_ipow(1.0 / h, DIM), fitting = m * sph_ipow(eta / h, DIM);
 rho += self;
 slope -= (R)DIM * self / h;
 /* Newton's step of h^d rho(h), which rises with h wherever the others stand; that of rho(h) - fitting turns its

@@ -250,12 +250,28 @@ static int compile_dims(struct scene *s, const cJSON *node, struct scene_functio
     return 0;
 }
 
-/* Without "shape": of pairs, unless there is a list that only bodies of one particle have. */
+/* Of functions, as of plugins'. */
+static int compile_name(struct scene *s, const cJSON *node, const char **name, struct error *e)
+{
+    if (json_string(s->doc, node, "name", true, name, e) < 0)
+        return -1;
+    const size_t n = strspn(*name, "abcdefghijklmnopqrstuvwxyz0123456789-");
+    if (**name >= 'a' && !(*name)[n] && n < 64)
+        return 0;
+    return document_fail(s->doc, json_get(node, "name"), e,
+                         "\"%s\" is no name for a function: give a small letter, then small "
+                         "letters, digits and \"-\"",
+                         *name);
+}
+
+/* Without "shape": of pairs, unless there are only lists that bodies of one particle have. */
 static int compile_shape(struct scene *s, const cJSON *node, struct scene_function *f,
                          struct error *e)
 {
     static const char *const shapes[] = {"point", "pair"};
-    size_t shape = json_get(node, "in") || json_get(node, "out") || json_get(node, "inout") ? 0 : 1;
+    const bool pair = json_get(node, "i") || json_get(node, "j");
+    const bool point = json_get(node, "in") || json_get(node, "out") || json_get(node, "inout");
+    size_t shape = point && !pair ? 0 : 1;
     if (scene_word(s, node, "shape", "shape", shapes, COUNT(shapes), &shape, e) < 0)
         return -1;
     f->shape = shape == 0 ? SPH_POINT : SPH_PAIR;
@@ -305,7 +321,7 @@ static int compile_function(struct scene *s, const cJSON *node, struct scene_fun
     if (!cJSON_IsObject(node))
         return document_fail(s->doc, node, e, "a function is an object with \"name\" and \"body\"");
     if (compile_shape(s, node, f, e) < 0 || check_keys(s, node, f->shape, e) < 0 ||
-        json_string(s->doc, node, "name", true, &f->name, e) < 0 ||
+        compile_name(s, node, &f->name, e) < 0 ||
         json_string(s->doc, node, "doc", false, &f->doc, e) < 0 ||
         json_string(s->doc, node, "source", false, &f->source, e) < 0 ||
         compile_dims(s, node, f, e) < 0 || compile_body(s, node, &f->run, e) < 0 ||

@@ -183,6 +183,10 @@ size_t plan_bytes(const struct plan *plan, size_t array);
 bool pass_writes(const struct pass *p, size_t array, int column);
 bool pass_reads_source(const struct pass *p, size_t array, int column);
 
+/* Whether the pass can run on a device; else *why is what lacks: "function "x" of plugin "y" has no device
+ * body" (backend.c). */
+bool pass_on_device(const struct plan *plan, const struct pass *p, char *why, size_t size);
+
 /* Whether anything changes the column as the run goes on: a pass, or the integrator. */
 bool plan_changes(const struct plan *plan, size_t array, int column);
 

@@ -61,7 +61,7 @@ static const sph_device_point SPH_POINT_DEVICE = {
     SPH_DEVICE_LIST(parameters),
     SPH_DEVICE_LIST(state),
 #ifdef SPH_POINT_FAIL
-    SPH_LIST(SPH_CAT(SPH_POINT, sentence)),
+    SPH_LIST(SPH_CAT(SPH_POINT_LOOP, sentence)),
 #else
     {NULL, 0u, 0u},
 #endif

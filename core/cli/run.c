@@ -194,6 +194,7 @@ static int run(const struct arguments *a, struct loaded *l, const char *folder,
     signal(SIGINT, interrupt);
     signal(SIGTERM, interrupt);
     int status = loop_run(&l->plan, &out, &o, e);
+    bodies_blame(&l->plan, e);
     output_close(&out);
     return status;
 }

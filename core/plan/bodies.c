@@ -427,20 +427,72 @@ int bodies_register(struct registry *r, const struct scene *s, struct error *e)
     return status;
 }
 
+/* -- In a plan ------------------------------------------------------------------------------- */
+
+static bool has_text(const struct pass *p)
+{
+    return p->use.entry && p->use.entry->text;
+}
+
+/* The edit that put the pass there. */
+static const cJSON *node_of(const struct plan *plan, const struct pass *p)
+{
+    for (size_t k = 0; k < plan->n_step; k++)
+        if (plan->step[k].node && strcmp(plan->step[k].name, p->step) == 0)
+            return plan->step[k].node;
+    return plan->scene->scheme.node;
+}
+
+bool bodies_any(const struct plan *plan)
+{
+    for (size_t i = 0; i < plan->n_pass; i++)
+        if (has_text(&plan->pass[i]))
+            return true;
+    return false;
+}
+
+int bodies_fit(const struct plan *plan, struct error *e)
+{
+    char why[512];
+    for (size_t i = 0; bodies_any(plan) && i < plan->n_pass; i++) {
+        const struct pass *p = &plan->pass[i];
+        if (!pass_on_device(plan, p, why, sizeof why))
+            return document_fail(plan->scene->doc, node_of(plan, p), e,
+                                 "%s, but functions of the scene have only a text, for devices: "
+                                 "make them a plugin with sph new-plugin NAME --from %s",
+                                 why, plan->scene->doc->path);
+    }
+    return 0;
+}
+
+/* Whether the sentence begins with the file's name. */
+static bool is_about(const struct error *e, const char *file)
+{
+    const size_t n = file ? strlen(file) : 0;
+    return n && strncmp(e->text, file, n) == 0 && e->text[n] == ':';
+}
+
+void bodies_blame(const struct plan *plan, struct error *e)
+{
+    for (size_t i = 0; e->exit_code == EXIT_REFUSED && i < plan->scene->n_function; i++) {
+        const struct scene_function *f = &plan->scene->function[i];
+        const struct scene_body *const bodies[] = {&f->run, &f->before, &f->after};
+        for (int b = 0; b < 3; b++)
+            if (is_about(e, bodies[b]->file) || is_about(e, bodies[b]->prelude_file))
+                e->exit_code = EXIT_USAGE;
+    }
+}
+
 int bodies_need_device(const struct plan *plan, struct error *e)
 {
     for (size_t i = 0; !plan->on_device && i < plan->n_pass; i++) {
         const struct pass *p = &plan->pass[i];
-        const cJSON *node = plan->scene->scheme.node;
-        if (!p->use.entry || !p->use.entry->text)
-            continue;
-        for (size_t k = 0; k < plan->n_step; k++)
-            if (plan->step[k].node && strcmp(plan->step[k].name, p->step) == 0)
-                node = plan->step[k].node;
-        return document_fail(plan->scene->doc, node, e,
-                             "function \"%s\" of the scene has only a text: run with --device "
-                             "opencl, or make it a plugin with sph new-plugin NAME --from %s:%s",
-                             p->use.item->name, plan->scene->doc->path, p->use.item->name);
+        if (has_text(p))
+            return document_fail(
+                plan->scene->doc, node_of(plan, p), e,
+                "function \"%s\" of the scene has only a text: run with --device opencl, or make "
+                "it a plugin with sph new-plugin NAME --from %s:%s",
+                p->use.item->name, plan->scene->doc->path, p->use.item->name);
     }
     return 0;
 }

@@ -2,6 +2,7 @@
 #include "cli/cli.h"
 #include "cli/scene_options.h"
 #include "domain/ranks.h"
+#include "plan/bodies.h"
 #include "run/loop.h"
 #include <errno.h>
 #include <math.h>
@@ -193,6 +194,7 @@ static int run(const struct arguments *a, struct loaded *l, const char *folder,
     signal(SIGINT, interrupt);
     signal(SIGTERM, interrupt);
     int status = loop_run(&l->plan, &out, &o, e);
+    bodies_blame(&l->plan, e);
     output_close(&out);
     return status;
 }
@@ -209,7 +211,7 @@ static int run_or_show(const struct arguments *a, const char *folder, struct res
     if (!status && !resume && (a->dry || a->verbose))
         plan_print(&l.plan, stdout);
     if (!status && !a->dry)
-        status = run(a, &l, folder, resume, e);
+        status = bodies_need_device(&l.plan, e) || run(a, &l, folder, resume, e);
     loaded_free(&l);
     return status;
 }

@@ -3,6 +3,7 @@
 #include "cli/scene_options.h"
 #include "domain/ranks.h"
 #include "domain/same_plugins.h"
+#include "plan/bodies.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -123,7 +124,13 @@ static int load(struct loaded *l, const struct scene_options *o, struct error *e
     for (size_t i = 0; i < l->scene.n_plugin; i++)
         if (load_named(l, l->scene.plugin[i], e))
             return -1;
-    return 0;
+    return bodies_register(&l->registry, &l->scene, e);
+}
+
+int loaded_open(struct loaded *l, const struct scene_options *o, struct error *e)
+{
+    *l = (struct loaded){0};
+    return load(l, o, e);
 }
 
 int loaded_make(struct loaded *l, const struct scene_options *o, bool guarded, struct error *e)

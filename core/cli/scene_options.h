@@ -36,6 +36,8 @@ struct loaded {
 /* Reads the document, applies --set, compiles, loads the plugins, makes the plan. On failure the caller still
  * calls loaded_free. */
 int loaded_make(struct loaded *l, const struct scene_options *o, bool guarded, struct error *e);
+/* The same without the plan. */
+int loaded_open(struct loaded *l, const struct scene_options *o, struct error *e);
 void loaded_free(struct loaded *l);
 
 #endif

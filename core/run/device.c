@@ -277,16 +277,17 @@ static bool is_uniform(const struct run *r)
 static int sweep(struct run *r, size_t k, uint32_t number, struct error *e)
 {
     const struct stage *s = &r->device->stage[k];
+
+    if (has_pairs(r, s) && ((r->lists_suspect && run_device_lists(r, true, e)) ||
+                            run_device_frame(r, s->frame, e)))
+        return -1;
+    /* New lists may have brought another quantum. */
     const struct kernel_now now = {.time = r->time,
                                    .dt = r->dt,
                                    .step = r->step,
                                    .quantum = r->quantum,
                                    .uniform_h = is_uniform(r),
                                    .sweep = number};
-
-    if (has_pairs(r, s) &&
-        ((r->lists_suspect && run_device_lists(r, true, e)) || run_device_frame(r, s->frame, e)))
-        return -1;
     if (make_ready(r, s, e) ||
         kernels_launch(r->device->kernels, k, r->device->arena, r->device->list, &now, e))
         return -1;
@@ -300,16 +301,17 @@ static int iterate(struct run *r, size_t k, struct error *e)
     const struct stage *s = &r->device->stage[k];
     const struct pass *p = &r->plan->pass[s->pass[0]];
     const struct arena *arena = &r->device->arena[s->array];
-    double busy = (double)arena->n, all = busy;
+    const uint64_t all = (arena->n + SPH_LANES - 1) / SPH_LANES;
+    uint64_t busy = all;
 
-    for (uint32_t number = 0; busy > 0.0; number++) {
+    for (uint32_t number = 0; busy > 0; number++) {
         if (sweep(r, k, number, e))
             return -1;
-        count_pairs(r, s, busy / all);
-        if (ops_reduce(r->device->ops, arena, p->unfinished, 0, -1, SPH_REDUCE_SUM, &busy, e))
+        count_pairs(r, s, (double)busy / (double)all);
+        if (look_groups(r->device->look, arena, p->unfinished, &busy, e))
             return -1;
         if (number + 1 >= p->max_sweeps) {
-            r->cost.unfinished += (uint64_t)busy;
+            r->cost.unfinished += busy;
             break;
         }
     }

@@ -204,7 +204,8 @@ struct scene_watch {
     const char *where; /* escaped: region that nobody may leave; or NULL */
 };
 
-struct scene_memory; /* what the structures stand in: private to scene.c */
+struct scene_function; /* functions.h */
+struct scene_memory;   /* what the structures stand in: private to scene.c */
 
 struct scene {
     struct document *doc; /* not owned; outlives the scene */
@@ -216,6 +217,8 @@ struct scene {
     const char *units; /* "none", "SI", "cgs" */
     uint64_t limit;    /* particles that the scene may make: "limits": {"particles": ..} */
     struct box box;
+    struct scene_function *function;
+    size_t n_function;
     struct scene_material *material;
     size_t n_material;
     struct scene_array *array;

@@ -19,7 +19,6 @@ enum {
     KEY_VERBOSE = 'v',
     KEY_UNTIL = 256,
     KEY_STEPS,
-    KEY_DEVICE,
     KEY_PATH,
     KEY_DRY,
     KEY_AUDIT,
@@ -37,7 +36,6 @@ static const struct argp_option options[] = {
      "Go on from a checkpoint: a file, or \"latest\", the newest good one in --out; the scene may be left "
      "out",
      0},
-    {"device", KEY_DEVICE, "cpu", 0, "Where to compute; this version: cpu", 0},
     {"path", KEY_PATH, "WORD", 0,
      "How pair loops run, to compare: best (default), reference (a pair at a time, in double), "
      "extended (in long double), base, avx2, avx512",
@@ -72,13 +70,6 @@ static double number(struct argp_state *state, const char *option, const char *t
         argp_error(state, "--%s: \"%s\" is no %s of at least %g", option, text,
                    whole ? "whole number" : "number", min);
     return value;
-}
-
-static void only(struct argp_state *state, const char *option, const char *text, const char *here)
-{
-    if (strcmp(text, here) != 0)
-        argp_error(state, "--%s %s is not available in this version; it has: %s", option, text,
-                   here);
 }
 
 /* SPH_PATH_... by name. */
@@ -123,9 +114,6 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_STEPS:
         a->steps = (uint64_t)number(state, "steps", arg, 0.0, true);
-        return 0;
-    case KEY_DEVICE:
-        only(state, "device", arg, "cpu");
         return 0;
     case KEY_PATH:
         a->path = path(state, arg);

@@ -16,6 +16,9 @@ struct scene_options {
     const char *set[64];  /* --set */
     size_t n_load, n_set;
     const char *precision; /* --precision, or NULL */
+    bool device_opencl;    /* --device opencl[:device_number] */
+    size_t device_number;
+    bool device_only; /* --device-only */
 };
 
 /* An argp child that fills a struct scene_options (its input). */

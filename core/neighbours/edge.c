@@ -2,82 +2,105 @@
  *
  * The fewer sources a group of eight has the closer together it is, whatever the reach: so the
  * edge follows the spacing, and that is measured, for schemes differ in how many spacings h is. */
-#include "neighbours/neighbours.h"
+#include "neighbours/edge.h"
 
-#include "neighbours/grid.h"
+#include "neighbours/neighbours.h"
 #include "neighbours/range.h"
 
 #include <math.h>
 #include <stdlib.h>
 
 #define WIDE 1.5 /* the largest reach in units of the mean, from which they range widely */
-#define FULL 0.7 /* cells with fewer points, in units of what a point's own cell has, are cut off */
 
-/* The mean reach; 0 if they range widely or a number is none. */
-static double even_reach(const struct cloud *c, double *mean)
+static double slice_sum(const double *h, size_t n)
 {
-    double sum = 0;
+    double lane[EDGE_LANES] = {0}, sum = 0;
+    size_t i = 0;
 
-    for (size_t i = 0; i < c->n; i++) {
-        sum += c->h[i];
-    }
-    *mean = c->n > 0 ? c->scale * sum / (double)c->n : 0;
-    return c->scale * range_of(c->h, c->n, 1).most <= WIDE * *mean ? *mean : 0;
-}
-
-/* Points in a full cell, by the counts of all cells: those at a surface would make it less. */
-static double full_count(const uint32_t *count, size_t n, double points)
-{
-    double squares = 0, sum = 0, cells = 0;
-
-    for (size_t k = 0; k < n; k++) {
-        squares += (double)count[k] * (double)count[k];
-    }
-    for (size_t k = 0; k < n; k++) {
-        if (count[k] >= FULL * squares / points) {
-            sum += (double)count[k];
-            cells++;
+    for (; i + EDGE_LANES <= n; i += EDGE_LANES) {
+        for (size_t l = 0; l < EDGE_LANES; l++) {
+            lane[l] += h[i + l];
         }
     }
-    return sum / cells;
+    for (size_t l = 0; i + l < n; l++) {
+        lane[l] += h[i + l];
+    }
+    for (size_t l = 0; l < EDGE_LANES; l++) {
+        sum += lane[l];
+    }
+    return sum;
 }
 
-/* The mean distance of points, measured in cells of this edge; 0 if it cannot be. */
-static double spacing(const struct cloud *c, double edge)
+static struct edge_known know(const struct cloud *c)
 {
-    double lo[3], hi[3], full;
-    struct grid g;
-    uint32_t *count;
+    struct edge_known k = {.dim = c->dim, .n = c->n, .scale = c->scale};
 
+    for (size_t i = 0; i < c->n; i += EDGE_SLICE) {
+        k.h_sum += slice_sum(c->h + i, c->n - i < EDGE_SLICE ? c->n - i : EDGE_SLICE);
+    }
+    k.h_most = range_of(c->h, c->n, 1).most;
     for (int a = 0; a < c->dim; a++) {
         struct range r = range_of(c->x[a], c->n, 1);
 
-        lo[a] = r.least;
-        hi[a] = r.most;
-        if (!(hi[a] - lo[a] < 1e150)) {
-            return 0; /* a number is none */
+        k.least[a] = r.least;
+        k.most[a] = r.most;
+    }
+    return k;
+}
+
+bool edge_begin(const struct edge_known *k, struct grid *g, double *edge)
+{
+    double mean = k->n > 0 ? k->scale * k->h_sum / (double)k->n : 0;
+    bool even = k->scale * k->h_most <= WIDE * mean && mean > 0;
+
+    if (!even) { /* reaches range widely, or a number is none */
+        *edge = k->dim == 3 ? 3 * mean : 3.9 * mean;
+        return false;
+    }
+    *edge = mean;
+    for (int a = 0; a < k->dim; a++) {
+        if (!(k->most[a] - k->least[a] < 1e150)) {
+            return false; /* a number is none */
         }
     }
-    grid_init(&g, lo, hi, c->dim, edge, c->n);
-    count = calloc(g.n, sizeof *count);
-    if (!count) {
-        return 0;
-    }
-    for (size_t i = 0; i < c->n; i++) {
-        count[grid_cell(&g, c->x, i)]++;
-    }
-    full = full_count(count, g.n, (double)c->n);
-    free(count);
-    return pow(full, -1.0 / c->dim) / g.inverse;
+    grid_init(g, k->least, k->most, k->dim, k->dim == 3 ? 2 * mean : 3 * mean, k->n);
+    return true;
+}
+
+double edge_end(const struct edge_known *k, const struct grid *g, double sum, double cells)
+{
+    double distance = pow(sum / cells, -1.0 / k->dim) / g->inverse;
+
+    return distance > 0 ? distance * (k->dim == 3 ? 2.0 : 3.2) : k->scale * k->h_sum / (double)k->n;
 }
 
 double cell_best(const struct cloud *points)
 {
-    double mean, reach = even_reach(points, &mean), distance;
+    struct edge_known k = know(points);
+    double edge, squares = 0, sum = 0, cells = 0;
+    struct grid g;
+    uint32_t *count;
 
-    if (!(reach > 0)) {
-        return points->dim == 3 ? 3 * mean : 3.9 * mean;
+    if (!edge_begin(&k, &g, &edge)) {
+        return edge;
     }
-    distance = spacing(points, points->dim == 3 ? 2 * reach : 3 * reach);
-    return distance > 0 ? distance * (points->dim == 3 ? 2.0 : 3.2) : reach;
+    count = calloc(g.n, sizeof *count);
+    if (!count) {
+        return edge;
+    }
+    for (size_t i = 0; i < points->n; i++) {
+        count[grid_cell(&g, points->x, i)]++;
+    }
+    for (size_t q = 0; q < g.n; q++) {
+        squares += (double)count[q] * (double)count[q];
+    }
+    /* Those at a surface would make it less. */
+    for (size_t q = 0; q < g.n; q++) {
+        if (count[q] >= EDGE_FULL * squares / (double)k.n) {
+            sum += (double)count[q];
+            cells++;
+        }
+    }
+    free(count);
+    return edge_end(&k, &g, sum, cells);
 }

@@ -249,6 +249,12 @@ struct scene {
         const char *manager; /* NULL: the plan chooses */
     } neighbours;            /* optional key "neighbours": {"skin": 0.1, "manager": "octree"} */
     const char *precision;   /* "double", "mixed", "single"; NULL: the scheme's */
+    /* The command line's, as `precision` may be. */
+    struct {
+        bool opencl; /* else the processor */
+        bool only;   /* no falling back to it */
+        size_t number;
+    } device;
     struct scene_watch watch[WATCH_CAUSES];
     struct scene_compare *compare;
     size_t n_compare;

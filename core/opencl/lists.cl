@@ -1,0 +1,195 @@
+/* opencl/lists.cl -- the sources of groups of eight destinations, group by group: counted, then written where the
+ * running sums of the counts say; and what is true of them. In doubles and exact, whatever the group looks like:
+ * on a processor bundles.cl does most groups faster.
+ *
+ * counts: planes of `stride` uints, of the groups from `from` on: all sources of a group, those of both halves,
+ * of the lower, of the upper one; 1 if it is done here. */
+
+#define MANY (CPU ? 32u : 1u) /* groups that a work item takes */
+
+enum { ALL, BOTH, LOWER, UPPER, HERE };
+
+/* A stretch of groups of the list. */
+struct stretch {
+    uint from, n, stride, pad;
+};
+
+struct found {
+    uint n[4]; /* as counts; that of ALL is not looked at */
+};
+
+/* Where the k-th of a side goes, from the group's beginning: those of both halves first, what is left over of
+ * the longer side next, then lower and upper in turns. */
+INLINE uint place_of(const struct found *f, uint side, uint k)
+{
+    const uint turns = min(f->n[LOWER], f->n[UPPER]);
+    const uint common = f->n[BOTH] + max(f->n[LOWER], f->n[UPPER]) - turns;
+
+    if (side == BOTH) {
+        return k;
+    }
+    return k < turns ? common + 2 * k + (side == UPPER) : f->n[BOTH] + k - turns;
+}
+
+/* Counts them, or writes them to `out` by counts that are known. */
+INLINE struct found group_do(const struct asked *q, const struct index *s, INDEX,
+                             __global const double *wide, struct points src,
+                             __global const uint *order, uint mapped, uint group,
+                             const struct found *known, __global uint *out)
+{
+    struct found f = {{0, 0, 0, 0}};
+    struct walk w;
+    uint block, mask;
+
+    walk_begin(&w, s, found_in, q);
+    while (walk_next(&w, s, found_in, q, &block, &mask)) {
+        for (; mask; mask &= mask - 1) {
+            const uint first = (block * 8 + first_bit(mask)) * 8;
+            const uint last = min(first + 8, s->n);
+
+            for (uint j = first; j < last; j++) {
+                const double reach = src.scale > 0 ? src.scale * wide[src.h + j] : 0.0;
+                double8 r2 = 0.0;
+
+                FOR_AXES
+                {
+                    const double8 d = q->x[a] - wide[src.x + a * src.plane + j];
+
+                    r2 += d * d;
+                }
+                const long8 near = r2 <= more(q->r2, (double8)(reach * reach));
+                const bool low = any(near.lo), high = any(near.hi);
+
+                if (low || high) {
+                    const uint index = mapped ? order[j] : j;
+                    const uint side = index / 8 == group || (low && high) ? BOTH : low ? LOWER : UPPER;
+
+                    if (out) {
+                        out[place_of(known, side, f.n[side])] = index;
+                    }
+                    f.n[side]++;
+                }
+            }
+        }
+    }
+    return f;
+}
+
+KERNEL void list_count(__global const double *dst_wide, struct points dst, double factor,
+                       __global const double *wide, struct points src, struct index s, INDEX,
+                       __global const uint *order, uint mapped, struct stretch t, uint all,
+                       __global uint *counts)
+{
+    const ulong begin = get_global_id(0) * MANY, end = min(begin + MANY, (ulong)t.n);
+
+    for (ulong k = begin; k < end; k++) {
+        const uint group = t.from + (uint)k;
+        __global uint *c = counts + k;
+
+        if (all || c[HERE * t.stride]) {
+            struct asked q;
+            struct found f;
+
+            ask(&q, dst_wide, dst, factor, group * 8, min(group * 8 + 8, dst.n));
+            f = group_do(&q, &s, found_in, wide, src, order, mapped, group, 0, 0);
+            c[ALL * t.stride] = f.n[BOTH] + f.n[LOWER] + f.n[UPPER];
+            c[BOTH * t.stride] = f.n[BOTH];
+            c[LOWER * t.stride] = f.n[LOWER];
+            c[UPPER * t.stride] = f.n[UPPER];
+            c[HERE * t.stride] = 1;
+        }
+    }
+}
+
+INLINE struct found counted(__global const uint *c, uint stride)
+{
+    struct found f = {{0, c[BOTH * stride], c[LOWER * stride], c[UPPER * stride]}};
+
+    return f;
+}
+
+/* Says where turns begin; writes nothing of a list that has no room for what comes up to here. */
+KERNEL void list_fill(__global const double *dst_wide, struct points dst, double factor,
+                      __global const double *wide, struct points src, struct index s, INDEX,
+                      __global const uint *order, uint mapped, struct stretch t,
+                      __global const uint *counts, __global const uint *first, __global uint *common,
+                      __global uint *step, __global const ulong *total, uint slot, ulong room)
+{
+    const ulong begin = get_global_id(0) * MANY, end = min(begin + MANY, (ulong)t.n);
+
+    for (ulong k = begin; k < end; k++) {
+        const uint group = t.from + (uint)k;
+        const struct found f = counted(counts + k, t.stride);
+
+        common[group] =
+            f.n[BOTH] + max(f.n[LOWER], f.n[UPPER]) - min(f.n[LOWER], f.n[UPPER]);
+        if (counts[k + HERE * t.stride] && total[slot + 1] <= room) {
+            struct asked q;
+
+            ask(&q, dst_wide, dst, factor, group * 8, min(group * 8 + 8, dst.n));
+            group_do(&q, &s, found_in, wide, src, order, mapped, group, &f, step + first[group]);
+        }
+    }
+}
+
+/* Of a work group's groups: true pairs within reach, no particle with itself; destinations with more than `most`.
+ * Where nobody counts only groups are looked at that may have those. */
+KERNEL void list_pairs(__global const double *dst_wide, struct points dst,
+                       __global const double *wide, struct points src, uint same, uint groups,
+                       uint counts, ulong most, __global const uint *begin,
+                       __global const uint *step, __global ulong *out)
+{
+    __local ulong sums[2 * WG];
+    const uint l = (uint)get_local_id(0);
+    const ulong first = get_global_id(0) * MANY, last = min(first + MANY, (ulong)groups);
+    ulong pairs = 0, crowded = 0;
+
+    for (ulong at = first; at < last; at++) {
+        const uint g = (uint)at;
+        const uint d = g * 8, end = min(d + 8, dst.n);
+        const long8 self = (long8)(0, 1, 2, 3, 4, 5, 6, 7) + (long)d;
+        double8 x[DIM], most2;
+        long8 n = 0;
+
+        if (!counts && (most == 0 || begin[g + 1] - begin[g] <= most)) {
+            continue;
+        }
+        FOR_AXES x[a] = load8(dst_wide + dst.x + a * dst.plane, d, end);
+        most2 = dst.scale * load8(dst_wide + dst.h, d, end);
+        most2 = self < (long8)(long)end ? most2 * most2 : (double8)-1.0;
+        for (uint k = begin[g]; k < begin[g + 1]; k++) {
+            const uint j = step[k];
+            const double reach = src.scale > 0 ? src.scale * wide[src.h + j] : 0.0;
+            double8 r2 = 0.0, limit = more((double8)(reach * reach), most2);
+            long8 in;
+
+            FOR_AXES
+            {
+                const double8 e = x[a] - wide[src.x + a * src.plane + j];
+
+                r2 += e * e;
+            }
+            limit = most2 < 0.0 ? most2 : limit;
+            in = r2 < limit;
+            n -= same ? in & (self != (long8)(long)j) : in;
+        }
+        pairs += (ulong)(n.s0 + n.s1 + n.s2 + n.s3 + n.s4 + n.s5 + n.s6 + n.s7);
+        if (most > 0) {
+            const long8 many = n > (long8)(long)most;
+
+            crowded -= (ulong)(many.s0 + many.s1 + many.s2 + many.s3 + many.s4 + many.s5 + many.s6 +
+                               many.s7);
+        }
+    }
+    sums[2 * l] = pairs;
+    sums[2 * l + 1] = crowded;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (l == 0) {
+        for (uint k = 1; k < WG; k++) {
+            pairs += sums[2 * k];
+            crowded += sums[2 * k + 1];
+        }
+        out[2 * get_group_id(0)] = pairs;
+        out[2 * get_group_id(0) + 1] = crowded;
+    }
+}

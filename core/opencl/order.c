@@ -1,0 +1,140 @@
+/* opencl/order.c -- the order of particles on a device: cell_order and cell_best, index for index (see lists.h; the
+ * kernels are order.cl). What is known of all points comes back to the host, which reckons the cells as it does for
+ * itself. */
+#include "config.h"
+
+#include "neighbours/edge.h"
+#include "opencl/search.h"
+
+#define COUNTS 4096 /* cells whose counts a work item adds up, on a processor */
+
+/* Sums of a kernel over the cells' counts: `width` numbers a work item. */
+static int sums(struct device_search *s, int kernel, size_t cells, size_t width, double least,
+                double *out, struct error *e)
+{
+    const uint32_t n = (uint32_t)cells, each = s->cpu ? COUNTS : 256;
+    const size_t items = search_items(cells, each), bytes = items * width * sizeof(uint64_t);
+    const uint64_t *part = search_room(s, bytes, e);
+    int status;
+
+    if (!part || device_reserve(s->d, &s->survey, bytes, "the order of particles", e) != 0) {
+        return -1;
+    }
+    if (kernel == K_SQUARES) {
+        status = SEARCH_LAUNCH(s, kernel, items, DEVICE_BUFFER(&s->begin), DEVICE_VALUE(n),
+                               DEVICE_VALUE(each), DEVICE_BUFFER(&s->survey));
+    } else {
+        status = SEARCH_LAUNCH(s, kernel, items, DEVICE_BUFFER(&s->begin), DEVICE_VALUE(n),
+                               DEVICE_VALUE(each), DEVICE_VALUE(least), DEVICE_BUFFER(&s->survey));
+    }
+    if (status != 0 || device_read(s->d, &s->survey, 0, s->host, bytes, e) != 0) {
+        return -1;
+    }
+    for (size_t w = 0; w < width; w++) {
+        out[w] = 0;
+    }
+    for (size_t k = 0; k < items; k++) {
+        for (size_t w = 0; w < width; w++) {
+            out[w] += (double)part[k * width + w];
+        }
+    }
+    return 0;
+}
+
+/* cell_best */
+static int best(struct device_search *s, const struct device_cloud *c,
+                const struct search_survey *v, double *edge, struct error *e)
+{
+    struct edge_known k = {
+        .dim = s->dim, .n = c->n, .scale = c->scale, .h_sum = v->h_sum, .h_most = v->h_most};
+    struct search_index ix = {.n = (uint32_t)c->n};
+    double squares, full[2];
+    struct grid g;
+
+    for (int a = 0; a < s->dim; a++) {
+        k.least[a] = v->least[a];
+        k.most[a] = v->most[a];
+    }
+    if (!edge_begin(&k, &g, edge)) {
+        return 0;
+    }
+    if (search_cells(s, c, &g, &ix, e) != 0 || sums(s, K_SQUARES, g.n, 1, 0, &squares, e) != 0 ||
+        sums(s, K_FULL, g.n, 2, EDGE_FULL * squares / (double)c->n, full, e) != 0) {
+        return -1;
+    }
+    *edge = edge_end(&k, &g, full[0], full[1]);
+    return 0;
+}
+
+/* Cells with more points than are sorted by x alone. */
+static int crowds(struct device_search *s, const struct search_points *p,
+                  const struct device_cloud *c, uint64_t id, const struct grid *g,
+                  const struct device_buffer *order, struct error *e)
+{
+    const uint32_t row = (uint32_t)g->last[0] + 1;
+    uint32_t n;
+
+    if (device_read(s->d, &s->pairs, 0, &n, sizeof n, e) != 0) {
+        return -1;
+    }
+    if (n == 0) {
+        return 0;
+    }
+    if (device_reserve(s->d, &s->copy, (size_t)s->dim * c->n * sizeof(double),
+                       "the order of particles", e) != 0) {
+        return -1;
+    }
+    return SEARCH_LAUNCH(s, K_CROWDS, n, DEVICE_BUFFER(c->wide), DEVICE_VALUE(*p), DEVICE_VALUE(id),
+                         DEVICE_VALUE(row), DEVICE_BUFFER(&s->begin), DEVICE_BUFFER(order),
+                         DEVICE_BUFFER(&s->pairs), DEVICE_BUFFER(&s->copy));
+}
+
+int device_order(struct device_search *s, const struct device_cloud *points, uint32_t id_slot,
+                 struct device_buffer *order, struct error *e)
+{
+    const struct search_points p = search_points_of(points);
+    const uint64_t id = (uint64_t)id_slot * points->plane + points->first;
+    const uint32_t n = (uint32_t)points->n;
+    struct search_index ix = {.n = n};
+    struct search_survey v;
+    double lo[3], edge;
+    struct grid g;
+    uint32_t cells;
+
+    if (points->n > UINT32_MAX / 4) {
+        return error_set(e, EXIT_RUN, "%zu particles: at most %u are possible on a device",
+                         points->n, UINT32_MAX / 4);
+    }
+    if (search_look(s, points, 0, true, &v, e) != 0 || search_check(&v, "source", e) != 0 ||
+        device_reserve(s->d, order, (points->n + 1) * sizeof(uint32_t), "the order of particles",
+                       e) != 0) {
+        return -1;
+    }
+    if (points->n == 0) {
+        return 0;
+    }
+    if (best(s, points, &v, &edge, e) != 0) {
+        return -1;
+    }
+    edge = edge > 0 ? edge : 0;
+    for (int a = 0; a < s->dim; a++) {
+        lo[a] = v.least[a] - 0.25 * edge;
+    }
+    grid_init(&g, lo, v.most, s->dim, edge, points->n);
+    cells = (uint32_t)g.n;
+    if (search_cells(s, points, &g, &ix, e) != 0 ||
+        device_scan(s->sort, &s->begin, 0, g.n, &s->begin, 0, &s->total, 0, e) != 0 ||
+        SEARCH_LAUNCH(s, K_SCATTER, search_items(points->n, search_each(s)),
+                      DEVICE_BUFFER(&s->cell), DEVICE_VALUE(n), DEVICE_BUFFER(&s->begin),
+                      DEVICE_BUFFER(order)) != 0 ||
+        device_reserve(s->d, &s->pairs, (points->n / 32 + 2) * sizeof(uint32_t),
+                       "the order of particles", e) != 0 ||
+        device_fill(s->d, &s->pairs, 0, 0, sizeof(uint32_t), e) != 0 ||
+        SEARCH_LAUNCH(s, K_SORT_CELLS, search_items(g.n, search_each(s)),
+                      DEVICE_BUFFER(points->wide), DEVICE_VALUE(p), DEVICE_VALUE(id),
+                      DEVICE_VALUE(cells), DEVICE_BUFFER(&s->begin), DEVICE_BUFFER(order),
+                      DEVICE_BUFFER(&s->pairs)) != 0) {
+        return -1;
+    }
+    return crowds(s, &p, points, id, &g, order, e);
+}

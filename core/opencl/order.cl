@@ -1,0 +1,261 @@
+/* opencl/order.cl -- the order of cells: order.c's and edge.c's of the neighbours, comparison by comparison. */
+
+#define CELL_MOST 32u /* points of a cell that are sorted by x alone */
+#define GROUP 8u
+#define STACK 40 /* halvings of a crowd, and more */
+
+/* -- How full cells are -------- */
+
+/* Of a stretch of counts: the sum of their squares. */
+KERNEL void full_squares(__global const uint *count, uint n, uint each, __global ulong *out)
+{
+    const ulong begin = get_global_id(0) * (ulong)each, end = min(begin + each, (ulong)n);
+    ulong sum = 0;
+
+    if (begin >= n) {
+        return;
+    }
+    for (ulong k = begin; k < end; k++) {
+        sum += (ulong)count[k] * count[k];
+    }
+    out[get_global_id(0)] = sum;
+}
+
+/* ... the sum of those that are not less, and how many they are. */
+KERNEL void full_sums(__global const uint *count, uint n, uint each, double least,
+                      __global ulong *out)
+{
+    const ulong begin = get_global_id(0) * (ulong)each, end = min(begin + each, (ulong)n);
+    ulong sum = 0, cells = 0;
+
+    if (begin >= n) {
+        return;
+    }
+    for (ulong k = begin; k < end; k++) {
+        const bool full = count[k] >= least;
+
+        sum += full ? count[k] : 0;
+        cells += full;
+    }
+    out[2 * get_global_id(0)] = sum;
+    out[2 * get_global_id(0) + 1] = cells;
+}
+
+/* -- Within a cell -------- */
+
+/* At the same place: by id, then by index. */
+INLINE bool before_id(__global const double *wide, ulong id, uint i, uint j)
+{
+    const long p = as_long(wide[id + i]), q = as_long(wide[id + j]);
+
+    return p != q ? p < q : i < j;
+}
+
+/* Sorts the points of cells by x; end[c] is where cell c ends. Crowded ones are put on a list, crowd[1] and on, of
+ * crowd[0]. */
+KERNEL void cells_sort(__global const double *wide, struct points p, ulong id, uint cells,
+                       __global const uint *end, __global uint *order, __global uint *crowd)
+{
+    const ulong first = get_global_id(0) * (ulong)EACH, last = min(first + EACH, (ulong)cells);
+    double x[CELL_MOST];
+    uint index[CELL_MOST];
+
+    for (ulong c = first; c < last; c++) {
+        const uint begin = c > 0 ? end[c - 1] : 0, n = end[c] - begin;
+
+        if (n > CELL_MOST) {
+            crowd[1 + atomic_inc(crowd)] = (uint)c;
+            continue;
+        }
+        for (uint k = 0; k < n; k++) {
+            const uint i = order[begin + k];
+            const double xi = wide[p.x + i];
+            uint q = k;
+
+            for (; q > 0; q--) {
+                const double xq = x[q - 1];
+
+                if (!(xi < xq || (!(xi > xq) && before_id(wide, id, i, index[q - 1])))) {
+                    break;
+                }
+                x[q] = xq;
+                index[q] = index[q - 1];
+            }
+            x[q] = xi;
+            index[q] = i;
+        }
+        for (uint k = 0; k < n; k++) {
+            order[begin + k] = index[k];
+        }
+    }
+}
+
+/* -- A crowded cell -------- */
+
+/* Its members: copies of their positions, their indices; all by their places in the whole order. */
+struct crowd {
+    __global double *x;
+    __global uint *i;
+    __global const double *wide;
+    ulong n, id;
+    bool turned[3]; /* axes along which it is walked from high to low */
+    ulong seed;
+};
+
+struct member {
+    double x[DIM];
+    uint i;
+};
+
+INLINE struct member member_get(const struct crowd *c, uint k)
+{
+    struct member m;
+
+    FOR_AXES m.x[a] = c->x[a * c->n + k];
+    m.i = c->i[k];
+    return m;
+}
+
+INLINE void member_set(const struct crowd *c, uint k, const struct member *m)
+{
+    FOR_AXES c->x[a * c->n + k] = m->x[a];
+    c->i[k] = m->i;
+}
+
+INLINE bool member_before(const struct crowd *c, double x, uint i, double y, uint j, uint axis)
+{
+    const bool below = x < y, above = x > y;
+
+    return below || above ? below != c->turned[axis] : before_id(c->wide, c->id, i, j);
+}
+
+INLINE bool place_before(const struct crowd *c, uint k, uint q, uint axis)
+{
+    return member_before(c, c->x[axis * c->n + k], c->i[k], c->x[axis * c->n + q], c->i[q], axis);
+}
+
+INLINE void member_swap(const struct crowd *c, uint k, uint q)
+{
+    const struct member a = member_get(c, k), b = member_get(c, q);
+
+    member_set(c, k, &b);
+    member_set(c, q, &a);
+}
+
+/* One of [first, last), in the middle of three that were drawn: which changes the time, not the result. */
+INLINE uint draw_pivot(struct crowd *c, uint first, uint last, uint axis)
+{
+    uint p[3];
+
+    for (int k = 0; k < 3; k++) {
+        c->seed = c->seed * 6364136223846793005UL + 1442695040888963407UL;
+        p[k] = first + (uint)((c->seed >> 33) % (last - first));
+    }
+    for (int k = 0; k < 3; k++) {
+        if (place_before(c, p[(k + 1) % 3], p[k], axis) &&
+            place_before(c, p[k], p[(k + 2) % 3], axis)) {
+            return p[k];
+        }
+    }
+    return p[0];
+}
+
+/* Puts those in front that come before place `want` along an axis, of [first, last) (Hoare's FIND). */
+INLINE void part(struct crowd *c, uint first, uint last, uint want, uint axis)
+{
+    while (last - first > 1) {
+        const uint pivot = draw_pivot(c, first, last, axis);
+        uint low = first;
+
+        member_swap(c, pivot, last - 1);
+        const struct member p = member_get(c, last - 1);
+        const double px = p.x[axis];
+
+        for (uint k = first; k + 1 < last; k++) {
+            const struct member here = member_get(c, k);
+
+            if (member_before(c, here.x[axis], here.i, px, p.i, axis)) {
+                const struct member there = member_get(c, low);
+
+                member_set(c, k, &there);
+                member_set(c, low, &here);
+                low++;
+            }
+        }
+        member_swap(c, low, last - 1);
+        if (want == low || want == low + 1) {
+            return;
+        }
+        if (want < low) {
+            last = low;
+        } else {
+            first = low + 1;
+        }
+    }
+}
+
+INLINE uint longest_axis(const struct crowd *c, uint first, uint last)
+{
+    double extent = -1;
+    uint axis = 0;
+
+    FOR_AXES
+    {
+        double lo = INFINITY, hi = -INFINITY;
+
+        for (uint k = first; k < last; k++) {
+            const double x = c->x[a * c->n + k];
+
+            lo = x < lo ? x : lo;
+            hi = x > hi ? x : hi;
+        }
+        if (hi - lo > extent) {
+            extent = hi - lo;
+            axis = a;
+        }
+    }
+    return axis;
+}
+
+/* Halves members across their longest extent until they are in groups, which begin at multiples of eight; a group
+ * is sorted by x. Cells are walked upwards along x, and along the others in turns. */
+KERNEL void crowds_sort(__global const double *wide, struct points p, ulong id, uint row,
+                        __global const uint *end, __global uint *order, __global const uint *crowd,
+                        __global double *copy)
+{
+    const uint k = (uint)get_global_id(0);
+    uint from[STACK], to[STACK], depth = 1;
+
+    if (k >= crowd[0]) {
+        return;
+    }
+    const uint cell = crowd[1 + k];
+    const bool turn = cell % row % 2 != 0;
+    struct crowd c = {copy, order, wide, p.n, id, {false, turn, turn}, cell};
+
+    from[0] = cell > 0 ? end[cell - 1] : 0;
+    to[0] = end[cell];
+    for (uint q = from[0]; q < to[0]; q++) {
+        FOR_AXES copy[a * c.n + q] = wide[p.x + a * p.plane + order[q]];
+    }
+    while (depth > 0) {
+        const uint first = from[--depth], last = to[depth];
+        const uint begin = first / GROUP, stop = last / GROUP + (last % GROUP > 0);
+
+        if (stop - begin < 2) {
+            for (uint q = first + 1; q < last; q++) {
+                for (uint r = q; r > first && place_before(&c, r, r - 1, 0); r--) {
+                    member_swap(&c, r, r - 1);
+                }
+            }
+            continue;
+        }
+        const uint middle = (begin + (stop - begin + 1) / 2) * GROUP;
+
+        part(&c, first, last, middle, longest_axis(&c, first, last));
+        from[depth] = first;
+        to[depth++] = middle;
+        from[depth] = middle;
+        to[depth++] = last;
+    }
+}

@@ -1,0 +1,16 @@
+/* opencl/search_text.h -- the OpenCL C of neighbour lists and of order: the texts of the .cl files beside it. */
+#ifndef OPENCL_SEARCH_TEXT_H
+#define OPENCL_SEARCH_TEXT_H
+
+#define TEXT extern __attribute__((visibility("hidden"))) const char /* each ends with NUL */
+
+TEXT sort_text[];
+TEXT points_text[];
+TEXT search_text[];
+TEXT lists_text[];
+TEXT bundles_text[];
+TEXT order_text[];
+
+#undef TEXT
+
+#endif

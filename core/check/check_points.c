@@ -14,7 +14,7 @@
 /* The measure is how far the native result moves when the last digit of all that it reads does, and its
  * own last digit: rounding may differ by as much at each operation inside. A wrong formula misses by
  * 1e10 and more. */
-#define BAR 16.0
+#define BAR 64.0
 #define TRIALS 8
 #define PARTICLES 1000u
 

@@ -292,9 +292,7 @@ static void put_extremes(FILE *out, const sph_list *list, const char *function)
     }
 }
 
-/* A text of the plugin, under the name of its file: compilers then speak of that file and its
- * lines. */
-static void put_text(FILE *out, const char *text, const char *file)
+void pair_source_text(FILE *out, const char *text, const char *file)
 {
     fputs("#line 1 \"", out);
     for (const char *s = file; *s; s++)
@@ -329,12 +327,22 @@ static void put_kernel(FILE *out, const sph_device_body *d, const struct pair_co
     PUT(out, pair_words);
     put_values(out, &d->j, true);
     fputs("    {\n", out);
-    put_text(out, d->text, d->file);
+    pair_source_text(out, d->text, d->file);
     fputs("    }\n    }\n", out);
     put_sums(out, &d->sum);
     put_extremes(out, &d->min, "fmin");
     put_extremes(out, &d->max, "fmax");
     fputs("}\n", out);
+}
+
+void pair_source_words(FILE *out)
+{
+    PUT(out, set);
+    pair_source_text(out, words_text, "opencl/words.cl");
+    pair_source_text(out, math_text, "sph/lanes-math.h");
+    pair_source_text(out, words_end_text, "opencl/words_end.cl");
+    PUT(out, other_words);
+    PUT(out, kernel_words);
 }
 
 char *pair_source(const sph_device_body *d, int dim, bool measured, struct error *e)
@@ -353,12 +361,7 @@ char *pair_source(const sph_device_body *d, int dim, bool measured, struct error
         error_memory(e, "the source of a sweep", 0);
         return NULL;
     }
-    PUT(out, set);
-    put_text(out, words_text, "opencl/words.cl");
-    put_text(out, math_text, "sph/lanes-math.h");
-    put_text(out, words_end_text, "opencl/words_end.cl");
-    PUT(out, other_words);
-    PUT(out, kernel_words);
+    pair_source_words(out);
     fprintf(out, "#define DIM %d\n#define SPH_LANES %u\n#define SPH_SELF %u\n", dim, SPH_LANES,
             d->self);
     fprintf(out, "#define SPH_REACH %s\n", d->reach == SPH_GATHER ? "h_i" : "sph_max(h_i, h_j)");
@@ -367,7 +370,7 @@ char *pair_source(const sph_device_body *d, int dim, bool measured, struct error
             measured ? "(sph_absolute ? fabs(value) : (value))" : "(value)",
             measured ? "(sph_absolute ? -fabs(value) : (value))" : "(value)");
     if (d->prelude)
-        put_text(out, d->prelude, d->prelude_file);
+        pair_source_text(out, d->prelude, d->prelude_file);
     put_kernel(out, d, column, n);
     bad = ferror(out);
     bad = fclose(out) != 0 || bad;

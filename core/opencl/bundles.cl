@@ -230,7 +230,8 @@ INLINE uint2 see(const float8 *p, const struct lanes *t, float16 reach2, bool un
     const float16 s = (float16)(p[DIM], p[DIM]);
     float16 r2 = (float16)(p[DIM + 1], p[DIM + 1]), any_near, own_near;
 
-    for (uint i = 0; i < 4; i++) {
+    UNROLL for (uint i = 0; i < 4; i++)
+    {
         float16 d = t->a2[i];
 
         FOR_AXES d += t->m2a[i][a] * (float16)(p[a], p[a]);
@@ -392,6 +393,20 @@ KERNEL void bundles_look(__global const double *dst_wide, struct points dst, dou
     }
 }
 
+/* Copies eight at a time, and up to seven too many, which are the next group's; of a run's last group not. */
+INLINE void copy_to(__global uint *restrict out, __global const uint *restrict in, uint n, bool last)
+{
+    const uint end = last ? n & ~7u : n;
+    uint i = 0;
+
+    for (; i < end; i += 8) {
+        vstore8(vload8(0, in + i), 0, out + i);
+    }
+    for (; i < n; i++) {
+        out[i] = in[i];
+    }
+}
+
 /* From the slots into the list. */
 KERNEL void bundles_put(struct stretch t, __global const uint *counts,
                         __global const uint *restrict slots, uint room, __global const uint *first,
@@ -415,15 +430,20 @@ KERNEL void bundles_put(struct stretch t, __global const uint *counts,
         if (counts[k + HERE * t.stride]) {
             continue;
         }
-        for (uint i = 0; i < f.n[BOTH]; i++) {
-            out[i] = both[i];
-        }
+        const bool exact = k + 1 == end;
+
+        copy_to(out, both, f.n[BOTH], exact);
         out += f.n[BOTH];
-        for (uint i = 0; i < more_of; i++) {
-            out[i] = rest[i];
-        }
+        copy_to(out, rest, more_of, exact);
         out += more_of;
-        for (uint i = 0; i < turns; i++) {
+        for (uint i = 0; i < (exact ? turns & ~7u : turns); i += 8) {
+            const uint8 p = vload8(0, low + i), q = vload8(0, high + i);
+
+            vstore16((uint16)(p.s0, q.s0, p.s1, q.s1, p.s2, q.s2, p.s3, q.s3, p.s4, q.s4, p.s5,
+                              q.s5, p.s6, q.s6, p.s7, q.s7),
+                     0, out + 2 * i);
+        }
+        for (uint i = turns & ~7u; i < turns && exact; i++) {
             out[2 * i] = low[i];
             out[2 * i + 1] = high[i];
         }

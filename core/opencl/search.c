@@ -61,7 +61,8 @@ static int programs(struct device_search *s, struct error *e)
         if ((k == K_LOOK || k == K_PUT) && !s->cpu) {
             continue;
         }
-        status = device_kernel(s->d, s->program, name[k], NULL, &s->kernel[k], e);
+        status = device_kernel(s->d, s->program, name[k],
+                               k < K_SQUARES ? "neighbour lists" : "order", &s->kernel[k], e);
     }
     return status;
 }

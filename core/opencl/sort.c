@@ -45,7 +45,7 @@ int device_sort_open(struct device_sort **out, struct device *d, bool cpu, struc
         goto failed;
     }
     for (int k = 0; k < KERNELS; k++) {
-        if (device_kernel(d, s->program, name[k], NULL, &s->kernel[k], e) != 0) {
+        if (device_kernel(d, s->program, name[k], "sort", &s->kernel[k], e) != 0) {
             goto failed;
         }
     }

@@ -284,6 +284,79 @@ for words, *parts in ((["--resume", "latest", "--out", "x"], "cannot read the fo
     case(" ".join(words), words, USAGE, *parts, copy=["base.json"])
 change('"output":', '"boundaries": [{"name": "wall"}], "output":', "/boundaries/0", '"wall"')
 
+# -- Functions that the scene brings -----------------------------------------------------------------
+
+DRAG = ('{"name": "drag", "body": "drag.body.h", "i": "v", "j": ["m", "rho", "v"], "sum": "a", "rates": {"v": "a"}, '
+        '"parameters": {"k": 0.1}}')
+HALF = '{"name": "half", "body": "half.body.h", "in": ["q", "h"], "out": "half_q", "properties": {"q": "scalar", "half_q": "scalar"}}'
+
+
+def function(of, old, new, *parts, path="/functions/0", **more):
+    """One change in the declaration of a function that is right."""
+    assert of.count(old) == 1, f"{old!r} stands {of.count(old)} times"
+    change('"output":', f'"functions": [{of.replace(old, new)}], "output":', path, *parts,
+           copy=["drag.body.h", "half.body.h", "blank.body", "latin1.body"], **more)
+
+
+ONLY_TEXT = ('function "drag" of the scene has only a text: run with --device opencl, or make it a plugin with '
+             "sph new-plugin NAME --from scene.json:drag")
+case("a function that has only a text", ["run", "scene.json"], USAGE, "/scheme/edit/0: ", ONLY_TEXT,
+     scene=base.replace('"output":', f'"functions": [{DRAG}], "output":').replace(
+         '"name": "gsph"', '"name": "gsph", "edit": [{"insert": "drag", "after": "gsph-rates"}]'), copy=["drag.body.h"])
+change('"output":', '"functions": @{}, "output":', "/functions: give an array of functions")
+change('"output":', '"functions": [@3], "output":', '/functions/0: a function is an object with "name" and "body"')
+function(DRAG, '{"name": "drag", ', "@{", 'the key "name" is missing')
+function(DRAG, '"drag"', '@"Drag"', '"Drag" is no name for a function', path="/functions/0/name: ")
+function(DRAG, DRAG, DRAG + ', ' + DRAG.replace('"drag"', '@"drag"'), "an earlier function has the name",
+         path="/functions/1/name: ")
+function(DRAG, '{"name": "drag"', '@{"name": "gsph-rates"', 'function "gsph-rates" is registered already, by ')
+function(DRAG, '{"name": "drag", "body": "drag.body.h"', '@{"name": "drag"', 'the key "body" is missing')
+for new, part in (("nowhere.body.h", "nowhere.body.h: cannot be read: No such file"), (".", ".: is no file"),
+                  ("blank.body", "blank.body: the text is empty"), ("", "the text is empty"),
+                  ("latin1.body", "latin1.body:2:12: byte 0xe9 is not UTF-8")):
+    function(DRAG, '"drag.body.h"', f'@"{new}"', part, path="/functions/0/body: ")
+function(DRAG, '"drag.body.h"', '"drag.body.h", "prelude": @"nowhere.h"', "cannot be read", path="/functions/0/prelude: ")
+function(DRAG, '"sum": "a"', '"summ": "a"'.replace('"s', '@"s', 1), 'unknown key "summ" (did you mean "sum"?)', path="/functions/0/summ: ")
+function(DRAG, '"sum": "a"', '@"out": "a"', "unknown key", path="/functions/0/")
+function(DRAG, '"sum": "a"', '"sum": @7', "7 is not the name of a property", path="/functions/0/sum: ")
+function(DRAG, '"sum": "a"', '"sum": {@"1st": "a"}', '"1st" is no name for a body', path="/functions/0/sum/1st: ")
+function(DRAG, '"sum": "a"', '"sum": {"r": @"a"}', 'the body has another "r" already', path="/functions/0/sum/r: ")
+function(DRAG, '"sum": "a"', '"sum": ["a", @"a"]', '"a" is named in "sum" already', path="/functions/0/sum/1: ")
+function(DRAG, '"i": "v"', '"i": ["v", @"rho"]', 'drag.body.h does not use "rho_i": leave it out of "i"', path="/functions/0/i/1: ")
+function(DRAG, '"sum": "a"', '"sum": {"a": @"dv_of_mine"}', 'no plugin that is loaded declares "dv_of_mine"',
+         '"properties": {"dv_of_mine": "scalar"}', path="/functions/0/sum/a: ")
+function(DRAG, '"sum": "a"', '"sum": "a", "properties": {@"q": "scalar"}', 'no list of the function has the property "q"',
+         path="/functions/0/properties/q: ")
+function(DRAG, '"sum": "a"', '"sum": "a", "properties": {"a": @"scalar"}', '"a" is declared by others already, and is of another type',
+         path="/functions/0/properties/a: ")
+function(DRAG, '"sum": "a"', '"sum": "a", "properties": {"a": @"vektor"}', 'unknown type "vektor" (did you mean "vector"?)',
+         path="/functions/0/properties/a: ")
+function(DRAG, '"sum": "a"', '"sum": "a", "properties": {"a": {@"typ": "vector"}}', '(did you mean "type"?)',
+         path="/functions/0/properties/a/typ: ")
+function(DRAG, '"sum": "a"', '"sum": "a", "reach": @"symetric"', '(did you mean "symmetric"?)', path="/functions/0/reach: ")
+function(DRAG, '"sum": "a"', '"sum": "a", "shape": @"pairs"', '(did you mean "pair"?)', path="/functions/0/shape: ")
+function(DRAG, '"sum": "a"', '"sum": "a", "dimensions": [1, @4]', "4 is no number of dimensions", path="/functions/0/dimensions/1: ")
+function(DRAG, '"sum": "a"', '"sum": "a", "reach_scale": @0', "0 is not a factor", path="/functions/0/reach_scale: ")
+function(DRAG, '"sum": "a"', '"sum": "a", "self": @1', "1 is not true or false", path="/functions/0/self: ")
+function(DRAG, '"sum": "a"', '"sum": "a", "after": @"half.body.h"', 'give an object with "body"', path="/functions/0/after: ")
+function(DRAG, '"sum": "a"', '"sum": "a", "after": {"body": "half.body.h", @"i": "v"}', "unknown key", path="/functions/0/after/i: ")
+function(DRAG, "0.1", '@"much"', "give the parameter's default, a number", path="/functions/0/parameters/k: ")
+function(DRAG, "0.1", '{"default": @2, "max": 1}', "the default 2 is not within -inf and 1", path="/functions/0/parameters/k/default: ")
+function(DRAG, "0.1", '@{"min": 2, "max": 1}', "min 2 is above max 1", path="/functions/0/parameters/k: ")
+function(DRAG, '"k"', '@"k-1"', '"k-1" is not a name', path="/functions/0/parameters/k-1: ")
+function(DRAG, '"k"', '@"r"', 'the body has another "r" already', path="/functions/0/parameters/r: ")
+function(DRAG, '"k"', '@"a"', '"a" is named in "sum" already', path="/functions/0/parameters/a: ")
+function(DRAG, '{"v": "a"}', '{"v": @3}', "give the name of the property that is its rate", path="/functions/0/rates/v: ")
+function(DRAG, '{"v": "a"}', '{"v": {"rate": "a", "kind": @"kik"}}', '(did you mean "kick"?)', path="/functions/0/rates/v/kind: ")
+function(DRAG, '"rates"', '"reductions": {"d": @{"use": "time-step"}}, "rates"', 'one of "min", "max" and "sum"', path="/functions/0/reductions/d: ")
+function(DRAG, '"rates"', '"reductions": {"d": {"min": "a", "use": @"timestep"}}, "rates"', '(did you mean "time-step"?)',
+         path="/functions/0/reductions/d/use: ")
+function('@' + DRAG, '"rates"', '"reductions": {"d": {"min": "a"}}, "rates"', 'reduction "d" is of "a", which is not a scalar')
+function('@' + DRAG, '{"v": "a"}', '{"v": "b"}', 'rate of "v" is "b", which is not declared as written')
+function('@' + DRAG, '"sum": "a"', '"sum": "a", "min": {"a_least": "a"}'.replace("a_least", "weight"), "access of property \"a\" is more than one of write, sum, max and min")
+function(HALF, '"out": "half_q"', '@"sum2": "half_q"', "unknown key", path="/functions/0/sum2: ")
+function(HALF, '"q": "scalar", ', "", 'no plugin that is loaded declares "q"', path="/functions/0/in/0: ")
+
 # -- Particles out of files ----------------------------------------------------------------------
 
 for name, parts in (

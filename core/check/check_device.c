@@ -1,16 +1,15 @@
 /* check/check_device.c -- the check `device`: the native body of a pair function against the one
  * for a device, where both exist, on the same particles: every accumulator, in each dimension,
  * with a kernel as powers and as a table. */
+#include "base/quiet.h"
 #include "check/checks.h"
 #include "check/sweep.h"
 #include "opencl/pair_body.h"
 #include "registry/kernel_form.h"
 
-#include <fcntl.h>
 #include <float.h>
 #include <math.h>
 #include <stdlib.h>
-#include <unistd.h>
 
 /* In units of DBL_EPSILON times the sum of the terms' absolute values. Both sides add the same
  * terms in the same order, at most some 300 for a destination here; each addition rounds by half
@@ -72,35 +71,12 @@ static int make_forms(struct trial *t, struct error *e)
 
 /* -- Runs -------- */
 
-/* What a driver prints is not the plugin's doing: while it works, standard output and standard
- * error go nowhere. Begin and end come in pairs; `kept` is theirs. */
-static void quiet_begin(int kept[2])
-{
-    const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
-
-    fflush(stdout);
-    for (int k = 0; k < 2; k++) {
-        kept[k] = dup(STDOUT_FILENO + k);
-        dup2(nowhere, STDOUT_FILENO + k);
-    }
-    close(nowhere);
-}
-
-static void quiet_end(const int kept[2])
-{
-    fflush(stdout);
-    for (int k = 0; k < 2; k++) {
-        dup2(kept[k], STDOUT_FILENO + k);
-        close(kept[k]);
-    }
-}
-
 /* In two ranges. */
 static int run_on_device(const struct trial *t, sph_batch *batch, bool absolute, struct error *e)
 {
     int kept[2], status;
 
-    quiet_begin(kept);
+    quiet_begin(kept); /* what a driver prints is not the plugin's doing */
     batch->count = CUT;
     status = pair_body_run(t->body, batch, absolute, e);
     batch->first = CUT;

@@ -121,6 +121,28 @@ void info_build(void)
     line("cairo", cairo_version_string());
 }
 
+/* "pthread-skylake-avx512-AMD EPYC": at most so many columns, cut with dots. */
+static void cut(char *text, size_t columns)
+{
+    if (strlen(text) > columns)
+        memcpy(text + columns - 3, "...", 4);
+}
+
+static void device_lines(size_t number, struct opencl_device *d)
+{
+    const double gib = 1024. * 1024. * 1024.;
+
+    cut(d->name, 68);
+    cut(d->platform, 32);
+    cut(d->driver, 24);
+    printf("opencl:%zu  %s\n", number, d->name);
+    printf("          %s, %u compute units, %s double precision\n", d->type, d->units,
+           d->fp64 ? "has" : "no");
+    printf("          %.1f GiB of memory, at most %.1f GiB in one buffer\n",
+           (double)d->memory / gib, (double)d->largest / gib);
+    printf("          %s, driver %s\n", d->platform, d->driver);
+}
+
 int info_devices(struct error *e)
 {
     struct opencl_device *d;
@@ -131,14 +153,12 @@ int info_devices(struct error *e)
     if (opencl_devices(&d, &n, e))
         return -1;
     if (n == 0)
-        puts("No OpenCL device: is an ICD installed (pocl-opencl-icd)?");
-    for (size_t i = 0; i < n; i++) {
-        printf("opencl:%zu  %s\n", i, d[i].name);
-        printf("          %s, %u units, %.1f GiB, %s double precision\n", d[i].type, d[i].units,
-               (double)d[i].memory / (1024. * 1024. * 1024.), d[i].fp64 ? "has" : "no");
-        printf("          %s, driver %s\n", d[i].platform, d[i].driver);
-        printf("          %s\n", d[i].version);
-    }
+        puts("No OpenCL device: install the driver of a GPU, or pocl-opencl-icd, which makes\n"
+             "one of the processor. `--device cpu' needs none.");
+    for (size_t i = 0; i < n; i++)
+        device_lines(i, &d[i]);
+    if (n > 0)
+        puts("\n`sph SCENE --device opencl:N' computes on device N; it needs double precision.");
     free(d);
     return 0;
 }

@@ -154,7 +154,11 @@ static void function_json(cJSON *o, const sph_function *f)
         number(o, "max_sweeps", f->max_sweeps);
     rates_json(o, &f->rates);
     reductions_json(o, &f->reductions);
-    words(o, "backends", f->device ? "cpu|opencl" : "cpu", "|");
+}
+
+static void backends_json(cJSON *o, const struct entry *x)
+{
+    words(o, "backends", entry_on_device(x) ? "cpu|opencl" : "cpu", "|");
 }
 
 static void specific_json(cJSON *o, const struct entry *x)
@@ -162,9 +166,11 @@ static void specific_json(cJSON *o, const struct entry *x)
     switch (x->kind) {
     case KIND_FUNCTION:
         function_json(o, entry_function(x));
+        backends_json(o, x);
         break;
     case KIND_EOS:
         props_json(o, "inverse_properties", &entry_eos(x)->inverse_props);
+        backends_json(o, x);
         break;
     case KIND_KERNEL:
         number(o, "support", entry_kernel(x)->support);

@@ -184,7 +184,6 @@ static void function_text(const sph_function *f)
         field("Sweeps", "at most %u, while %s is 1 anywhere", f->max_sweeps, f->unfinished);
     rates_text(&f->rates);
     reductions_text(&f->reductions);
-    field("Backends", "cpu%s", f->device ? ", opencl" : "");
 }
 
 /* What the plugin has said through extensions. */
@@ -206,14 +205,21 @@ static void kernel_text(const sph_kernel *k)
     field("Form", k->value ? "a function, tabulated" : "a sum of clamped powers");
 }
 
+static void backends_text(const struct entry *x)
+{
+    field("Backends", "cpu%s", entry_on_device(x) ? ", opencl" : "");
+}
+
 static void specific_text(const struct entry *x)
 {
     switch (x->kind) {
     case KIND_FUNCTION:
         function_text(entry_function(x));
+        backends_text(x);
         break;
     case KIND_EOS:
         props_text("Properties of its inverse", &entry_eos(x)->inverse_props);
+        backends_text(x);
         break;
     case KIND_KERNEL:
         kernel_text(entry_kernel(x));

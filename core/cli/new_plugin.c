@@ -6,6 +6,7 @@
 #include "base/place.h"
 #include "base/text.h"
 #include "cli/cli.h"
+#include "cli/from.h"
 #include "cli/template.h"
 
 #include <sph/abi.h>
@@ -21,6 +22,8 @@
 #include <time.h>
 #include <unistd.h>
 
+/* The folder of templates for what is made --from bodies. */
+#define FROM "from"
 /* What the templates are called in themselves. */
 #define TEMPLATE "my-plugin"
 #define TEMPLATE_C "my_plugin"
@@ -31,15 +34,19 @@ static const char *const builds[] = {"make", "autotools"};
 #define COUNT(array) (sizeof(array) / sizeof((array)[0]))
 
 struct arguments {
-    const char *name, *kind, *dir, *build;
+    const char *name, *kind, *dir, *build, *from;
+    struct from made_of; /* with `from` */
 };
 
-enum { KEY_KIND = 0x100, KEY_DIR, KEY_BUILD };
+enum { KEY_KIND = 0x100, KEY_DIR, KEY_BUILD, KEY_FROM };
 static const struct argp_option options[] = {
     {"kind", KEY_KIND, "KIND", 0,
      "what it registers: function (default), eos, boundary, kernel, scheme or exact", 0},
     {"dir", KEY_DIR, "DIR", 0, "make the folder NAME in DIR; here if not given", 0},
     {"build", KEY_BUILD, "SYSTEM", 0, "make (default: a Makefile) or autotools", 0},
+    {"from", KEY_FROM, "SCENE[:FUNCTION]|BODY", 0,
+     "make it of the functions that a scene brings, of one of them, or of those whose body this file is",
+     0},
     {0},
 };
 
@@ -57,6 +64,9 @@ static error_t parse(int key, char *value, struct argp_state *state)
     case KEY_BUILD:
         a->build = value;
         return 0;
+    case KEY_FROM:
+        a->from = value;
+        return 0;
     case ARGP_KEY_ARG:
         if (a->name)
             argp_error(state, "one plugin at a time, not also \"%s\"", value);
@@ -64,6 +74,12 @@ static error_t parse(int key, char *value, struct argp_state *state)
         return 0;
     case ARGP_KEY_NO_ARGS:
         argp_error(state, "the name of the plugin is missing");
+        return 0;
+    case ARGP_KEY_END:
+        if (a->from && a->kind)
+            argp_error(state, "--from and --kind do not go together: it is a function");
+        if (!a->kind)
+            a->kind = a->from ? FROM : "function";
         return 0;
     default:
         return ARGP_ERR_UNKNOWN;
@@ -172,8 +188,9 @@ static int copy_all(const struct arguments *a, const char *templates, const char
     const struct tm *date = gmtime(&now);
     struct template_word words[] = {
         {TEMPLATE, a->name}, {TEMPLATE_C, c_name}, {"@ABI@", abi},
-        {"@YEAR@", year},    {"@HEADERS@", ""},
+        {"@YEAR@", year},    {"@FUNCTIONS@", ""},  {"@HEADERS@", ""},
     };
+    char *functions = a->from ? from_words(&a->made_of) : strdup("");
     char *from = text_format("%s/%s", templates, a->kind);
     char *headers = NULL;
     int status = -1;
@@ -182,14 +199,20 @@ static int copy_all(const struct arguments *a, const char *templates, const char
         c_name[i] = a->name[i] == '-' ? '_' : a->name[i];
     snprintf(abi, sizeof(abi), "%u.%u", SPH_ABI_MAJOR, SPH_ABI_MINOR);
     snprintf(year, sizeof(year), "%d", date ? date->tm_year + 1900 : 0);
-    if (!from)
+    if (!from || !functions)
         error_memory(e, "a path", 0);
-    else
+    else if (a->from && !(headers = from_headers(&a->made_of)))
+        error_memory(e, "names", 0);
+    else if (!a->from)
         headers = template_headers(from, words, COUNT(words) - 1, e);
     if (headers) {
         words[COUNT(words) - 1].to = headers;
+        words[COUNT(words) - 2].to = functions;
         status = copy_parts(a, templates, to, words, COUNT(words), e);
     }
+    if (!status && a->from)
+        status = from_write(&a->made_of, to, a->name, e);
+    free(functions);
     free(headers);
     free(from);
     return status;
@@ -234,7 +257,14 @@ static int make_project(const struct arguments *a, const char *templates, const 
     return status;
 }
 
-static int run(const struct arguments *a, struct error *e)
+/* What it is made of, or that its kind is known. */
+static int check_origin(struct arguments *a, struct error *e)
+{
+    return a->from ? from_open(&a->made_of, a->from, e)
+                   : check_word("--kind", a->kind, kinds, COUNT(kinds), e);
+}
+
+static int run(struct arguments *a, struct error *e)
 {
     char *target =
         strcmp(a->dir, ".") == 0 ? strdup(a->name) : text_format("%s/%s", a->dir, a->name);
@@ -243,9 +273,8 @@ static int run(const struct arguments *a, struct error *e)
 
     if (!target)
         return error_memory(e, "a path", strlen(a->dir));
-    if (!check_name(a->name, e) && !check_word("--kind", a->kind, kinds, COUNT(kinds), e) &&
-        !check_word("--build", a->build, builds, COUNT(builds), e) &&
-        !check_places(a->dir, target, e)) {
+    if (!check_name(a->name, e) && !check_word("--build", a->build, builds, COUNT(builds), e) &&
+        !check_places(a->dir, target, e) && !check_origin(a, e)) {
         templates = templates_folder(e);
         if (templates)
             status = make_project(a, templates, target, e);
@@ -253,8 +282,10 @@ static int run(const struct arguments *a, struct error *e)
     if (!status)
         printf("%s: the project of a plugin, kind %s; its README.md tells more\n"
                "  cd %s && %smake check\n",
-               target, a->kind, target,
+               target, a->from ? "function" : a->kind, target,
                strcmp(a->build, "autotools") == 0 ? "autoreconf -fi && ./configure && " : "");
+    if (a->from)
+        from_free(&a->made_of);
     free(templates);
     free(target);
     return status;
@@ -262,7 +293,7 @@ static int run(const struct arguments *a, struct error *e)
 
 int cli_new_plugin(int argc, char **argv)
 {
-    struct arguments a = {NULL, "function", ".", "make"};
+    struct arguments a = {.dir = ".", .build = "make"};
     struct error e = {0};
 
     argp_err_exit_status = EXIT_USAGE;

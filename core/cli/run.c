@@ -2,6 +2,7 @@
 #include "cli/cli.h"
 #include "cli/scene_options.h"
 #include "domain/ranks.h"
+#include "plan/bodies.h"
 #include "run/loop.h"
 #include <errno.h>
 #include <math.h>
@@ -19,7 +20,6 @@ enum {
     KEY_VERBOSE = 'v',
     KEY_UNTIL = 256,
     KEY_STEPS,
-    KEY_DEVICE,
     KEY_PATH,
     KEY_DRY,
     KEY_AUDIT,
@@ -37,7 +37,6 @@ static const struct argp_option options[] = {
      "Go on from a checkpoint: a file, or \"latest\", the newest good one in --out; the scene may be left "
      "out",
      0},
-    {"device", KEY_DEVICE, "cpu", 0, "Where to compute; this version: cpu", 0},
     {"path", KEY_PATH, "WORD", 0,
      "How pair loops run, to compare: best (default), reference (a pair at a time, in double), "
      "extended (in long double), base, avx2, avx512",
@@ -72,13 +71,6 @@ static double number(struct argp_state *state, const char *option, const char *t
         argp_error(state, "--%s: \"%s\" is no %s of at least %g", option, text,
                    whole ? "whole number" : "number", min);
     return value;
-}
-
-static void only(struct argp_state *state, const char *option, const char *text, const char *here)
-{
-    if (strcmp(text, here) != 0)
-        argp_error(state, "--%s %s is not available in this version; it has: %s", option, text,
-                   here);
 }
 
 /* SPH_PATH_... by name. */
@@ -123,9 +115,6 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         return 0;
     case KEY_STEPS:
         a->steps = (uint64_t)number(state, "steps", arg, 0.0, true);
-        return 0;
-    case KEY_DEVICE:
-        only(state, "device", arg, "cpu");
         return 0;
     case KEY_PATH:
         a->path = path(state, arg);
@@ -205,6 +194,7 @@ static int run(const struct arguments *a, struct loaded *l, const char *folder,
     signal(SIGINT, interrupt);
     signal(SIGTERM, interrupt);
     int status = loop_run(&l->plan, &out, &o, e);
+    bodies_blame(&l->plan, e);
     output_close(&out);
     return status;
 }
@@ -221,7 +211,7 @@ static int run_or_show(const struct arguments *a, const char *folder, struct res
     if (!status && !resume && (a->dry || a->verbose))
         plan_print(&l.plan, stdout);
     if (!status && !a->dry)
-        status = run(a, &l, folder, resume, e);
+        status = bodies_need_device(&l.plan, e) || run(a, &l, folder, resume, e);
     loaded_free(&l);
     return status;
 }

@@ -3,10 +3,11 @@
 #include "cli/scene_options.h"
 #include "domain/ranks.h"
 #include "domain/same_plugins.h"
+#include "plan/bodies.h"
 #include <stdlib.h>
 #include <string.h>
 
-enum { KEY_LOAD = 'l', KEY_SET = 's', KEY_PRECISION = 512 };
+enum { KEY_LOAD = 'l', KEY_SET = 's', KEY_PRECISION = 512, KEY_DEVICE, KEY_DEVICE_ONLY };
 
 static const struct argp_option options[] = {
     {"load", KEY_LOAD, "PLUGIN", 0, "Load a plugin, by name or path, besides those the scene names",
@@ -15,8 +16,25 @@ static const struct argp_option options[] = {
      0},
     {"precision", KEY_PRECISION, "WORD", 0,
      "Of the arithmetic: double, mixed or single (default: the scene's, or its scheme's)", 0},
+    {"device", KEY_DEVICE, "cpu|opencl[:N]", 0,
+     "Where to compute (default: cpu); `sph info --devices' lists those of OpenCL", 0},
+    {"device-only", KEY_DEVICE_ONLY, NULL, 0,
+     "Refuse a scene that can not run on the device, instead of running it on the processor", 0},
     {0},
 };
+
+static void parse_device(struct scene_options *o, const char *text, struct argp_state *state)
+{
+    char *end = NULL;
+    o->device_opencl = strncmp(text, "opencl", 6) == 0;
+    o->device_number = 0;
+    if (o->device_opencl && text[6] == ':' && text[7] >= '0' && text[7] <= '9')
+        o->device_number = strtoul(text + 7, &end, 10);
+    if (strcmp(text, "cpu") != 0 && strcmp(text, "opencl") != 0 && !(end && *end == '\0'))
+        argp_error(state,
+                   "--device: \"%s\" is neither cpu nor opencl, nor opencl:N with N a number",
+                   text);
+}
 
 static error_t parse(int key, char *arg, struct argp_state *state)
 {
@@ -36,6 +54,12 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         if (strcmp(arg, "double") != 0 && strcmp(arg, "mixed") != 0 && strcmp(arg, "single") != 0)
             argp_error(state, "--precision: \"%s\" is none of double, mixed and single", arg);
         o->precision = arg;
+        return 0;
+    case KEY_DEVICE:
+        parse_device(o, arg, state);
+        return 0;
+    case KEY_DEVICE_ONLY:
+        o->device_only = true;
         return 0;
     case ARGP_KEY_ARG:
         if (o->path)
@@ -88,6 +112,9 @@ static int load(struct loaded *l, const struct scene_options *o, struct error *e
     l->has_scene = true;
     if (o->precision)
         l->scene.precision = o->precision;
+    l->scene.device.opencl = o->device_opencl;
+    l->scene.device.number = o->device_number;
+    l->scene.device.only = o->device_only;
     if (registry_init(&l->registry, e))
         return -1;
     l->has_registry = true;
@@ -97,7 +124,13 @@ static int load(struct loaded *l, const struct scene_options *o, struct error *e
     for (size_t i = 0; i < l->scene.n_plugin; i++)
         if (load_named(l, l->scene.plugin[i], e))
             return -1;
-    return 0;
+    return bodies_register(&l->registry, &l->scene, e);
+}
+
+int loaded_open(struct loaded *l, const struct scene_options *o, struct error *e)
+{
+    *l = (struct loaded){0};
+    return load(l, o, e);
 }
 
 int loaded_make(struct loaded *l, const struct scene_options *o, bool guarded, struct error *e)

@@ -16,6 +16,9 @@ struct scene_options {
     const char *set[64];  /* --set */
     size_t n_load, n_set;
     const char *precision; /* --precision, or NULL */
+    bool device_opencl;    /* --device opencl[:device_number] */
+    size_t device_number;
+    bool device_only; /* --device-only */
 };
 
 /* An argp child that fills a struct scene_options (its input). */
@@ -33,6 +36,8 @@ struct loaded {
 /* Reads the document, applies --set, compiles, loads the plugins, makes the plan. On failure the caller still
  * calls loaded_free. */
 int loaded_make(struct loaded *l, const struct scene_options *o, bool guarded, struct error *e);
+/* The same without the plan. */
+int loaded_open(struct loaded *l, const struct scene_options *o, struct error *e);
 void loaded_free(struct loaded *l);
 
 #endif

@@ -11,18 +11,6 @@
 #define IMAGE_LOW 1u
 #define IMAGE_HIGH 2u
 
-/* Periodic sides come in pairs. */
-static bool periodic(const struct box *box, int axis)
-{
-    return box->bounded && box->side[axis][0] == SIDE_PERIODIC &&
-           box->side[axis][1] == SIDE_PERIODIC;
-}
-
-static bool mirror(const struct box *box, int axis, int high)
-{
-    return box->bounded && box->side[axis][high] == SIDE_MIRROR;
-}
-
 /* -- Wrapping ---------------------------------------------------------------------------------- */
 
 static double wrap_periodic(double x, double min, double max)
@@ -38,7 +26,7 @@ static double wrap_periodic(double x, double min, double max)
 static double wrap_mirror(const struct box *box, int axis, double x, bool *flipped)
 {
     double min = box->min[axis], max = box->max[axis], length = max - min;
-    bool low = mirror(box, axis, 0), high = mirror(box, axis, 1);
+    bool low = sides_mirror(box, axis, 0), high = sides_mirror(box, axis, 1);
 
     *flipped = false;
     if (low && high && (x < min || x > max)) {
@@ -120,8 +108,8 @@ static bool wrap_axis(const struct box *box, struct particles *p, double *x, siz
     if (!isfinite(old)) {
         return false; /* the neighbour search names it */
     }
-    x[i] = periodic(box, axis) ? wrap_periodic(old, box->min[axis], box->max[axis])
-                               : wrap_mirror(box, axis, old, &flipped);
+    x[i] = sides_periodic(box, axis) ? wrap_periodic(old, box->min[axis], box->max[axis])
+                                     : wrap_mirror(box, axis, old, &flipped);
     move_kept(p, i, axis, old, x[i], flipped);
     if (flipped) {
         turn_state(p, i, axis);
@@ -137,7 +125,7 @@ size_t sides_wrap(const struct box *box, struct particles *p)
 
     for (int a = 0; a < p->dim; a++) {
         x[a] = particles_real(p, "x", (uint32_t)a);
-        any = any || periodic(box, a) || mirror(box, a, 0) || mirror(box, a, 1);
+        any = any || sides_periodic(box, a) || sides_mirror(box, a, 0) || sides_mirror(box, a, 1);
     }
     if (!any || !x[0]) {
         return 0;
@@ -166,18 +154,19 @@ void ghosts_fini(struct ghosts *g)
  * mirrors, but then turned ones stand between), so the first layer that is missing begins a length
  * away: that must be out of reach. A particle may well see a neighbour and its image, or its own
  * image, when the length is less than twice the margin: that is what an endless row looks like. */
-static int check_width(const struct box *box, int axis, double margin, const struct particles *p,
-                       struct error *e)
+int sides_check_width(const struct box *box, int axis, double margin, const char *name,
+                      struct error *e)
 {
     double length = box->max[axis] - box->min[axis];
-    bool pair = periodic(box, axis) || (mirror(box, axis, 0) && mirror(box, axis, 1));
+    bool pair =
+        sides_periodic(box, axis) || (sides_mirror(box, axis, 0) && sides_mirror(box, axis, 1));
 
     if (pair && !(length >= margin)) {
         return error_set(e, EXIT_RUN,
                          "%s: the domain is %g wide along %c, between %s sides, but particles "
                          "reach as far as %g: use a larger box or a smaller smoothing length",
-                         p->name, length, "xyz"[axis], periodic(box, axis) ? "periodic" : "mirror",
-                         margin);
+                         name, length, "xyz"[axis],
+                         sides_periodic(box, axis) ? "periodic" : "mirror", margin);
     }
     return 0;
 }
@@ -228,7 +217,7 @@ static int ghosts_reserve(struct ghosts *g, size_t n, struct error *e)
  * image stands. */
 static bool near_side(const struct box *box, int axis, unsigned image, double x, double margin)
 {
-    bool at_low = (image == IMAGE_LOW) != periodic(box, axis);
+    bool at_low = (image == IMAGE_LOW) != sides_periodic(box, axis);
 
     return (at_low ? x - box->min[axis] : box->max[axis] - x) < margin;
 }
@@ -237,7 +226,7 @@ static double image_of(const struct box *box, int axis, unsigned image, double x
 {
     double min = box->min[axis], max = box->max[axis];
 
-    if (periodic(box, axis)) {
+    if (sides_periodic(box, axis)) {
         return image == IMAGE_LOW ? x - (max - min) : x + (max - min);
     }
     return image == IMAGE_LOW ? 2 * min - x : 2 * max - x;
@@ -323,16 +312,16 @@ int ghosts_make(struct ghosts *g, const struct box *box, struct particles *p, do
     }
     for (int a = 0; a < p->dim && p->n > 0; a++) {
         size_t present = p->n + p->n_ghost;
-        bool pair = periodic(box, a);
+        bool pair = sides_periodic(box, a);
 
-        if (check_width(box, a, margin, p, e) != 0) {
+        if (sides_check_width(box, a, margin, p->name, e) != 0) {
             return -1;
         }
-        if ((pair || mirror(box, a, 0)) &&
+        if ((pair || sides_mirror(box, a, 0)) &&
             add_layer(g, box, p, a, IMAGE_LOW, present, margin, e) != 0) {
             return -1;
         }
-        if ((pair || mirror(box, a, 1)) &&
+        if ((pair || sides_mirror(box, a, 1)) &&
             add_layer(g, box, p, a, IMAGE_HIGH, present, margin, e) != 0) {
             return -1;
         }
@@ -354,7 +343,7 @@ static void refresh_real(const struct ghosts *g, const struct box *box, struct p
     unsigned turning = 0; /* the image bits that change the sign */
 
     for (int a = 0; a < p->dim && !position; a++) {
-        if (!periodic(box, a) && sides_turn(c->type, p->dim, k, a)) {
+        if (!sides_periodic(box, a) && sides_turn(c->type, p->dim, k, a)) {
             turning |= 3u << 2 * a;
         }
     }

@@ -16,6 +16,18 @@ struct box {
     enum side side[3][2]; /* [axis][0 low, 1 high] */
 };
 
+/* Periodic sides come in pairs. */
+static inline bool sides_periodic(const struct box *box, int axis)
+{
+    return box->bounded && box->side[axis][0] == SIDE_PERIODIC &&
+           box->side[axis][1] == SIDE_PERIODIC;
+}
+
+static inline bool sides_mirror(const struct box *box, int axis, int high)
+{
+    return box->bounded && box->side[axis][high] == SIDE_MIRROR;
+}
+
 struct ghosts {
     uint32_t *parent; /* [n_ghost]: real particle that ghost n + k copies */
     uint8_t *image;   /* [n_ghost]: 2 bits an axis: it stands 1 below the low side, 2 above the
@@ -46,6 +58,10 @@ size_t sides_wrap(const struct box *box, struct particles *p);
  * may see a neighbour and its image, or its own image; that is what an endless row looks like. */
 int ghosts_make(struct ghosts *g, const struct box *box, struct particles *p, double margin,
                 struct error *e);
+
+/* Whether the domain is so wide along an axis; `name` is the array's, for the sentence. */
+int sides_check_width(const struct box *box, int axis, double margin, const char *name,
+                      struct error *e);
 
 /* Copies column `c` from parents to ghosts; x is shifted or reflected, vectors and tensors are
  * reflected across mirrors. */

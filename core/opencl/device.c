@@ -13,6 +13,8 @@
 
 /* Buffers come in whole multiples of it [bytes]: a cache line, and what fills may be cut into. */
 #define GRAIN 128u
+/* Writes up to so long do not wait [bytes]. */
+#define STAGED_MOST 65536u
 
 /* -- Failures -------- */
 
@@ -121,6 +123,20 @@ static void find_facts(struct device *d)
     f->group_most = group;
 }
 
+struct cache_key device_cache_key(const struct device *d)
+{
+    struct cache_key k = {{0}};
+    char version[256];
+
+    text_of(d->id, CL_DEVICE_VERSION, version, sizeof(version));
+    cache_key_text(&k, PACKAGE_VERSION);
+    cache_key_text(&k, d->facts.platform);
+    cache_key_text(&k, d->facts.name);
+    cache_key_text(&k, d->facts.driver);
+    cache_key_text(&k, version);
+    return k;
+}
+
 /* The handle of that number. */
 static int find_device(struct device *d, size_t number, struct error *e)
 {
@@ -151,6 +167,10 @@ int device_open(struct device **out, size_t number, struct error *e)
     *out = NULL;
     if (!d)
         return error_memory(e, "a device", sizeof(*d));
+    /* PoCL would compile a kernel for each kind of launch, at the first of them, and keep in a program's
+     * binary what no launch takes. One form for all is built once; as kernels say how large their groups
+     * are, it is as fast. */
+    setenv("POCL_WORK_GROUP_SPECIALIZATION", "0", 0);
     if (find_device(d, number, e)) {
         free(d);
         return -1;
@@ -174,8 +194,10 @@ void device_close(struct device *d)
         return;
     if (d->queue)
         clFinish(d->queue);
-    for (size_t i = 0; i < d->n_pending; i++)
+    for (size_t i = 0; i < d->n_pending; i++) {
         clReleaseEvent(d->pending[i].event);
+        free(d->pending[i].staged);
+    }
     while (d->program)
         device_program_free(d, d->program);
     for (size_t i = 0; i < d->n_memory; i++)
@@ -312,17 +334,18 @@ static int check_range(const struct device *d, const struct device_buffer *b, si
 }
 
 static int noted(struct device *d, cl_int status, cl_event event, const char *verb, size_t bytes,
-                 struct error *e)
+                 void *staged, struct error *e)
 {
     size_t row;
 
     if (status != CL_SUCCESS) {
         char what[64];
         snprintf(what, sizeof(what), "%zu bytes", bytes);
+        free(staged);
         return device_lose(d, e, status, verb, what);
     }
     row = device_row(d, verb);
-    return device_note(d, event, row, bytes, e);
+    return device_note(d, event, row, bytes, staged, e);
 }
 
 int device_write(struct device *d, struct device_buffer *b, size_t at, const void *data,
@@ -330,13 +353,20 @@ int device_write(struct device *d, struct device_buffer *b, size_t at, const voi
 {
     cl_event event = NULL;
     cl_int status;
+    void *staged = NULL;
 
     if (bytes == 0)
         return device_alive(d, e);
     if (check_range(d, b, at, bytes, "write", e))
         return -1;
-    status = clEnqueueWriteBuffer(d->queue, b->mem, CL_TRUE, at, bytes, data, 0, NULL, &event);
-    return noted(d, status, event, "write", bytes, e);
+    /* Little goes by a copy, so that the queue need not run dry for it. */
+    if (bytes <= STAGED_MOST)
+        staged = malloc(bytes);
+    if (staged)
+        memcpy(staged, data, bytes);
+    status = clEnqueueWriteBuffer(d->queue, b->mem, staged ? CL_FALSE : CL_TRUE, at, bytes,
+                                  staged ? staged : data, 0, NULL, &event);
+    return noted(d, status, event, "write", bytes, staged, e);
 }
 
 int device_read(struct device *d, const struct device_buffer *b, size_t at, void *data,
@@ -350,7 +380,7 @@ int device_read(struct device *d, const struct device_buffer *b, size_t at, void
     if (check_range(d, b, at, bytes, "read", e))
         return -1;
     status = clEnqueueReadBuffer(d->queue, b->mem, CL_TRUE, at, bytes, data, 0, NULL, &event);
-    return noted(d, status, event, "read", bytes, e);
+    return noted(d, status, event, "read", bytes, NULL, e);
 }
 
 int device_copy(struct device *d, struct device_buffer *to, size_t to_at,
@@ -366,7 +396,7 @@ int device_copy(struct device *d, struct device_buffer *to, size_t to_at,
         return -1;
     status =
         clEnqueueCopyBuffer(d->queue, from->mem, to->mem, from_at, to_at, bytes, 0, NULL, &event);
-    return noted(d, status, event, "copy", bytes, e);
+    return noted(d, status, event, "copy", bytes, NULL, e);
 }
 
 int device_fill(struct device *d, struct device_buffer *b, size_t at, uint32_t value, size_t bytes,
@@ -381,7 +411,7 @@ int device_fill(struct device *d, struct device_buffer *b, size_t at, uint32_t v
         return -1;
     status =
         clEnqueueFillBuffer(d->queue, b->mem, &value, sizeof(value), at, bytes, 0, NULL, &event);
-    return noted(d, status, event, "fill", bytes, e);
+    return noted(d, status, event, "fill", bytes, NULL, e);
 }
 
 int device_finish(struct device *d, struct error *e)

@@ -64,11 +64,15 @@ int device_fill(struct device *d, struct device_buffer *b, size_t at, uint32_t v
 struct device_program;
 struct device_kernel;
 
-/* From OpenCL C 1.2, out of the cache of binaries where source, options, device and driver are the same as
- * once before. `what` it is, in messages: "the scene's sweeps". `text` is not kept. Freed with the device
- * or by device_program_free. */
+/* From OpenCL C 1.2, out of the cache of binaries (device_cache.h) where source, options, device, driver and
+ * sph are the same as once before. `what` it is, in messages: "the scene's sweeps". `text` is not kept.
+ * What does not compile: "FILE:LINE: does not compile on \"NAME\": MESSAGE" with EXIT_REFUSED, where
+ * `#line` names files. Freed with the device or by device_program_free. */
 int device_build(struct device *d, struct device_program **out, const char *text,
                  const char *options, const char *what, struct error *e);
+/* The FILE that the last device_build complained of, so that the caller can say whose it is; NULL: none.
+ * The device's, until the next build. */
+const char *device_build_file(const struct device *d);
 void device_program_free(struct device *d, struct device_program *p);
 /* Seconds that builds took; how many came out of the cache, how many did not. */
 double device_build_seconds(const struct device *d, unsigned *cached, unsigned *built);
@@ -101,7 +105,8 @@ struct device_arg {
     }
 
 /* With the arguments in order. At least `items` work items: rounded up to whole work groups where the kernel
- * says how large those are (reqd_work_group_size), so a kernel must look at its number. 0 items: nothing
+ * says how large those are (reqd_work_group_size, which it should: PoCL vectorizes only then), so a kernel
+ * must look at its number. 0 items: nothing
  * is done. */
 int device_launch(struct device *d, struct device_kernel *k, size_t items,
                   const struct device_arg *arg, size_t n_arg, struct error *e);
@@ -118,5 +123,14 @@ struct device_time {
 };
 /* All so far, waited for; the device's, until the next call. */
 const struct device_time *device_times(struct device *d, size_t *n);
+
+/* What the device reaches with the simplest kernels; 0: does not have it. */
+struct device_rates {
+    double bytes;                /* of a triad, read and written [1/s] */
+    double flops_f32, flops_f64; /* of multiply-adds, two each [1/s] */
+};
+/* Measured in some tenths of a second, or known from an earlier run. Takes some of the device's memory
+ * meanwhile. */
+int device_measure(struct device *d, struct device_rates *r, struct error *e);
 
 #endif

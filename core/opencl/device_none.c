@@ -94,6 +94,12 @@ int device_build(struct device *d, struct device_program **out, const char *text
     return none(e);
 }
 
+const char *device_build_file(const struct device *d)
+{
+    (void)d;
+    return NULL;
+}
+
 void device_program_free(struct device *d, struct device_program *p)
 {
     (void)d, (void)p;
@@ -135,6 +141,13 @@ const struct device_time *device_times(struct device *d, size_t *n)
     (void)d;
     *n = 0;
     return NULL;
+}
+
+int device_measure(struct device *d, struct device_rates *r, struct error *e)
+{
+    (void)d;
+    *r = (struct device_rates){0};
+    return none(e);
 }
 
 #endif

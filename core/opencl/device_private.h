@@ -4,13 +4,15 @@
 #define OPENCL_DEVICE_PRIVATE_H
 
 #include "opencl/device.h"
+#include "opencl/device_cache.h"
 
 #include <CL/cl.h>
 
 /* A launch or transfer whose time is not read yet. */
 struct device_pending {
     cl_event event;
-    size_t row; /* of the times */
+    size_t row;   /* of the times */
+    void *staged; /* what a write reads from; freed after it */
 };
 
 struct device_kernel {
@@ -43,6 +45,7 @@ struct device {
     struct device_program *program; /* all of them */
     double build_seconds;
     unsigned cached, built;
+    char wrong_file[256];     /* of the last build that failed */
     struct device_time *time; /* a row a name */
     size_t n_time;
     struct device_pending *pending; /* in the queue's order */
@@ -57,13 +60,17 @@ const char *device_word(cl_int status);
  * nothing else works. Returns -1. */
 int device_lose(struct device *d, struct error *e, cl_int status, const char *verb,
                 const char *what);
+/* What distinguishes this device, its driver and this sph from others, for the cache. */
+struct cache_key device_cache_key(const struct device *d);
 /* -1 with the first failure's sentence, once the device has failed. */
 int device_alive(const struct device *d, struct error *e);
 
 /* The row of the times of that name, made if new; SIZE_MAX without memory. */
 size_t device_row(struct device *d, const char *name);
-/* Notes a command's event for its row; takes the event over. */
-int device_note(struct device *d, cl_event event, size_t row, size_t bytes, struct error *e);
+/* Notes a command's event for its row; takes the event over, and `staged` (NULL: nothing), which is freed
+ * after the command. */
+int device_note(struct device *d, cl_event event, size_t row, size_t bytes, void *staged,
+                struct error *e);
 /* Reads the times of all that is noted; waits for it. */
 int device_collect(struct device *d, struct error *e);
 

@@ -1,9 +1,11 @@
-/* opencl/device_program.c -- programs and kernels of an open device: built, looked up, launched (see
- * device.h). */
+/* opencl/device_program.c -- programs and kernels of an open device: built or taken from the cache, looked
+ * up, launched (see device.h). */
 #include "config.h"
 
 #if SPH_HAVE_OPENCL
 
+#include "base/quiet.h"
+#include "opencl/device_log.h"
 #include "opencl/device_private.h"
 
 #include <stdlib.h>
@@ -41,22 +43,41 @@ static char *build_log(struct device *d, cl_program program)
     return log;
 }
 
-static int build_failed(struct device *d, cl_program program, cl_int status, const char *what,
-                        struct error *e)
+/* One sentence: where, and what. */
+static int build_failed(struct device *d, cl_program program, cl_int status, const char *text,
+                        const char *what, struct error *e)
 {
+    struct device_complaint c;
     char *log = build_log(d, program);
-    const char *first = log ? strstr(log, "error") : NULL;
+    const char *const name = d->facts.name;
 
-    while (first && first > log && first[-1] != '\n')
-        first--;
-    if (first)
-        error_set(e, EXIT_REFUSED, "%s do not compile on \"%s\": %.*s", what, d->facts.name,
-                  (int)strcspn(first, "\n"), first);
-    else
-        error_set(e, EXIT_RUN, "device \"%s\" fails to build %s: %s (%d)", d->facts.name, what,
+    if (!log || !device_log_read(text, log, &c))
+        error_set(e, EXIT_RUN, "device \"%s\" fails to build %s: %s (%d)", name, what,
                   device_word(status), (int)status);
+    else if (c.line == 0)
+        error_set(e, EXIT_REFUSED, "%s: does not compile on \"%s\": %s", what, name, c.message);
+    else if (!c.file[0])
+        error_set(e, EXIT_REFUSED, "%s, line %lu: does not compile on \"%s\": %s", what, c.line,
+                  name, c.message);
+    else {
+        error_set(e, EXIT_REFUSED, "%s:%lu: does not compile on \"%s\": %s", c.file, c.line, name,
+                  c.message);
+        memcpy(d->wrong_file, c.file, sizeof(c.file));
+    }
     free(log);
     return -1;
+}
+
+/* What compilers print beside their log is not for our user's screen. */
+static cl_int build_quietly(struct device *d, cl_program program, const char *options)
+{
+    int kept[2];
+    cl_int status;
+
+    quiet_begin(kept);
+    status = clBuildProgram(program, 1, &d->id, options, NULL, NULL);
+    quiet_end(kept);
+    return status;
 }
 
 static int build(struct device *d, cl_program *out, const char *text, const char *options,
@@ -67,15 +88,79 @@ static int build(struct device *d, cl_program *out, const char *text, const char
 
     if (status != CL_SUCCESS)
         return device_lose(d, e, status, "take", what);
-    status = clBuildProgram(program, 1, &d->id, options ? options : "", NULL, NULL);
+    status = build_quietly(d, program, options);
     if (status != CL_SUCCESS) {
-        build_failed(d, program, status, what, e);
+        build_failed(d, program, status, text, what, e);
         clReleaseProgram(program);
         return -1;
     }
     d->built++;
     *out = program;
     return 0;
+}
+
+/* -- Cache -------- */
+
+/* A binary built before; NULL: there is none that the driver takes. */
+static cl_program from_cache(struct device *d, const struct cache_key *key, const char *options)
+{
+    size_t bytes;
+    unsigned char *binary = cache_get(key, &bytes);
+    const unsigned char *const list[] = {binary};
+    cl_int taken = CL_SUCCESS, status;
+    cl_program program = NULL;
+
+    if (!binary)
+        return NULL;
+    program = clCreateProgramWithBinary(d->context, 1, &d->id, &bytes, (const unsigned char **)list,
+                                        &taken, &status);
+    if (status == CL_SUCCESS && taken == CL_SUCCESS)
+        status = build_quietly(d, program, options);
+    free(binary);
+    if (status == CL_SUCCESS && taken == CL_SUCCESS) {
+        d->cached++;
+        return program;
+    }
+    if (program)
+        clReleaseProgram(program);
+    return NULL;
+}
+
+/* PoCL does the better part of its work only here. */
+static void to_cache(const struct cache_key *key, cl_program program)
+{
+    size_t bytes = 0;
+    unsigned char *binary = NULL;
+
+    if (clGetProgramInfo(program, CL_PROGRAM_BINARY_SIZES, sizeof(bytes), &bytes, NULL) ==
+            CL_SUCCESS &&
+        bytes > 0)
+        binary = malloc(bytes);
+    if (binary &&
+        clGetProgramInfo(program, CL_PROGRAM_BINARIES, sizeof(binary), &binary, NULL) == CL_SUCCESS)
+        cache_put(key, binary, bytes);
+    free(binary);
+}
+
+static int build_or_take(struct device *d, cl_program *out, const char *text, const char *options,
+                         const char *what, struct error *e)
+{
+    struct cache_key key = device_cache_key(d);
+
+    cache_key_text(&key, options);
+    cache_key_text(&key, text);
+    *out = from_cache(d, &key, options);
+    if (*out)
+        return 0;
+    if (build(d, out, text, options, what, e))
+        return -1;
+    to_cache(&key, *out);
+    return 0;
+}
+
+const char *device_build_file(const struct device *d)
+{
+    return d->wrong_file[0] ? d->wrong_file : NULL;
 }
 
 int device_build(struct device *d, struct device_program **out, const char *text,
@@ -90,7 +175,8 @@ int device_build(struct device *d, struct device_program **out, const char *text
     p = calloc(1, sizeof(*p));
     if (!p)
         return error_memory(e, what, sizeof(*p));
-    if (build(d, &p->program, text, options, what, e)) {
+    d->wrong_file[0] = '\0';
+    if (build_or_take(d, &p->program, text, options ? options : "", what, e)) {
         free(p);
         return -1;
     }
@@ -217,7 +303,7 @@ int device_launch(struct device *d, struct device_kernel *k, size_t items,
         clEnqueueNDRangeKernel(d->queue, k->kernel, 1, NULL, &global, &k->group, 0, NULL, &event);
     if (status != CL_SUCCESS)
         return device_lose(d, e, status, "run", k->name);
-    return device_note(d, event, k->row, 0, e);
+    return device_note(d, event, k->row, 0, NULL, e);
 }
 
 #else

@@ -54,6 +54,7 @@ static int collect(struct device *d, size_t n, struct error *e)
             end > begin)
             d->time[p->row].seconds += 1e-9 * (double)(end - begin);
         clReleaseEvent(p->event);
+        free(p->staged);
     }
     if (waited != CL_SUCCESS && !status)
         status = device_lose(d, e, waited, "do", "what was asked of it");
@@ -67,15 +68,18 @@ int device_collect(struct device *d, struct error *e)
     return collect(d, d->n_pending, e);
 }
 
-int device_note(struct device *d, cl_event event, size_t row, size_t bytes, struct error *e)
+int device_note(struct device *d, cl_event event, size_t row, size_t bytes, void *staged,
+                struct error *e)
 {
     if (!d->pending)
         d->pending = malloc(PENDING_MOST * sizeof(*d->pending));
     if (!d->pending || row == SIZE_MAX) {
+        clFinish(d->queue);
         clReleaseEvent(event);
+        free(staged);
         return error_memory(e, "the times of a device", PENDING_MOST * sizeof(*d->pending));
     }
-    d->pending[d->n_pending++] = (struct device_pending){event, row};
+    d->pending[d->n_pending++] = (struct device_pending){event, row, staged};
     d->time[row].launches++;
     d->time[row].bytes += bytes;
     if (++d->unflushed >= FLUSH_EVERY) {

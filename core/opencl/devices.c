@@ -39,7 +39,7 @@ static void describe(struct opencl_device *d, cl_platform_id platform, cl_device
 {
     cl_device_type type = 0;
     cl_uint units = 0;
-    cl_ulong memory = 0;
+    cl_ulong memory = 0, largest = 0;
     cl_device_fp_config fp64 = 0;
 
     memset(d, 0, sizeof(*d));
@@ -52,10 +52,12 @@ static void describe(struct opencl_device *d, cl_platform_id platform, cl_device
     clGetDeviceInfo(id, CL_DEVICE_TYPE, sizeof(type), &type, NULL);
     clGetDeviceInfo(id, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof(units), &units, NULL);
     clGetDeviceInfo(id, CL_DEVICE_GLOBAL_MEM_SIZE, sizeof(memory), &memory, NULL);
+    clGetDeviceInfo(id, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof(largest), &largest, NULL);
     clGetDeviceInfo(id, CL_DEVICE_DOUBLE_FP_CONFIG, sizeof(fp64), &fp64, NULL);
     d->type = type_name(type);
     d->units = units;
     d->memory = memory;
+    d->largest = largest;
     d->fp64 = fp64 != 0;
 }
 

@@ -12,6 +12,7 @@ struct opencl_device {
     const char *type; /* "cpu", "gpu", "accelerator", "other" */
     uint32_t units;   /* compute units */
     uint64_t memory;  /* [bytes] */
+    uint64_t largest; /* that one buffer may have [bytes] */
     bool fp64;        /* has double precision */
 };
 

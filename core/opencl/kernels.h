@@ -23,6 +23,10 @@ struct kernels;
 int kernels_make(struct kernels **out, struct device *d, const struct plan *plan,
                  const struct arena *arena, const struct stage *stage, size_t n_stage,
                  struct error *e);
+/* The same in the form that is asked for. */
+int kernels_make_as(struct kernels **out, struct device *d, const struct plan *plan,
+                    const struct arena *arena, const struct stage *stage, size_t n_stage,
+                    bool vectors, struct error *e);
 void kernels_free(struct kernels *k);
 
 /* Parameters and numbers of states as they are now go to the device, if they have changed. */
@@ -31,7 +35,8 @@ int kernels_update(struct kernels *k, struct error *e);
  * one sweep. */
 int kernels_launch(struct kernels *k, size_t s, const struct arena *arena,
                    const struct device_list *list, const struct kernel_now *now, struct error *e);
-/* Whether a body has said sph_fail since last asked: its sentence, as of the plugin. Waits. */
+/* Whether a body has said sph_fail since last asked: then *failed is true, and e says so as of the plugin (EXIT_RUN),
+ * though 0 is returned; -1 is the device's own failure. Waits. */
 int kernels_failed(struct kernels *k, bool *failed, struct error *e);
 /* The whole source, for people; the caller frees it. */
 char *kernels_source(const struct plan *plan, const struct arena *arena, const struct stage *stage,

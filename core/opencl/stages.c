@@ -1,7 +1,6 @@
 /* opencl/stages.c -- cuts a moment's passes into stages (see stages.h). Reads the plan alone. */
 #include "opencl/stages.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -207,27 +206,4 @@ void stages_free(struct stage *stage, size_t n)
     for (size_t k = 0; stage && k < n; k++)
         free(stage[k].pass);
     free(stage);
-}
-
-bool stages_can(const struct plan *plan, const struct pass *p, char *why, size_t size)
-{
-    const struct entry *entry = p->use.entry;
-    const char *lacks = NULL;
-
-    if (p->assignment) {
-        snprintf(why, size, "the expression of \"%s\" is computed on the processor", p->step);
-        return false;
-    }
-    if (!p->function)
-        lacks = entry_eos(entry)->device ? NULL : "equation of state";
-    else if (p->shape == SPH_POINT)
-        lacks = p->function->device_run ? NULL : "function";
-    else if (!p->function->device || (p->before && !p->function->device_before) ||
-             (p->after && !p->function->device_after))
-        lacks = "function";
-    if (!lacks)
-        return true;
-    snprintf(why, size, "%s \"%s\" of plugin \"%s\" has no device body", lacks, p->use.item->name,
-             plan->registry->plugin[entry->plugin].name);
-    return false;
 }

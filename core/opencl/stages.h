@@ -28,8 +28,4 @@ int stages_plan(const struct plan *plan, enum moment moment, bool fuse, struct s
                 size_t *n, struct error *e);
 void stages_free(struct stage *stage, size_t n);
 
-/* Whether the pass can run on a device; else *why is what lacks: "function \"x\" of plugin \"y\" has no
- * device body". */
-bool stages_can(const struct plan *plan, const struct pass *p, char *why, size_t size);
-
 #endif

@@ -10,11 +10,9 @@ void particles_swap(struct particles *p, int a, int b)
 
     one->data = other->data;
     one->low = other->low;
-    one->mirror = other->mirror;
     one->plane = other->plane;
     other->data = old.data;
     other->low = old.low;
-    other->mirror = old.mirror;
     other->plane = old.plane;
 }
 

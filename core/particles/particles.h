@@ -140,7 +140,7 @@ int particles_mirror(struct particles *p, int column, struct error *e);
 /* Room for n + n_ghost particles; contents are kept, new elements are zero. When n changes, what
  * the ghosts held is lost. Columns may move: fetch pointers anew. */
 int particles_resize(struct particles *p, size_t n, size_t n_ghost, struct error *e);
-/* Two columns of one kind, held alike, trade their elements. */
+/* Two columns of one kind, held alike, trade their elements; a mirror stays with its column, and is old. */
 void particles_swap(struct particles *p, int a, int b);
 /* new[i] = old[order[i]] for all real particles, in every `state` column (others become stale). */
 int particles_permute(struct particles *p, const uint32_t *order, struct error *e);

@@ -274,7 +274,7 @@ int columns_finish(struct plan *plan, struct error *e)
     for (size_t i = 0; i < plan->n_pass; i++)
         if (find_continued(plan, i, e))
             return -1;
-    if (precision_decide(plan, e))
+    if (backend_decide(plan, e) || precision_decide(plan, e))
         return -1;
     closing_find(plan);
     if (add_integrator_columns(plan, e) || find_required(plan, e))

@@ -27,6 +27,9 @@ void asked_free(struct plan *plan);
 
 /* fusion.c: how many of the steps from `first` on are one function's parts (0: none), and which it is. */
 size_t fusion_find(const struct plan *plan, size_t first, const struct entry **whole);
+/* backend.c: whether the run is on the device that the scene asks for; where it can not be, says so in a line, or
+ * fails. */
+int backend_decide(struct plan *plan, struct error *e);
 /* precision.c: which passes work in floats, which columns are held in them. */
 int precision_decide(struct plan *plan, struct error *e);
 /* closing.c: of every rate, which pass corrects its property; needs to know how columns are held. */

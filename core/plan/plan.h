@@ -154,6 +154,7 @@ struct plan {
     struct plan_list *list;
     size_t n_list;
     enum precision precision;
+    bool on_device;                          /* runs on the scene's OpenCL device */
     const struct neighbour_manager *manager; /* NULL: as it suits */
     double skin;                             /* of neighbour lists, a fraction of the support */
     double reach_scale;                      /* largest over the functions */
@@ -182,12 +183,19 @@ size_t plan_bytes(const struct plan *plan, size_t array);
 bool pass_writes(const struct pass *p, size_t array, int column);
 bool pass_reads_source(const struct pass *p, size_t array, int column);
 
+/* Whether the pass can run on a device; else *why is what lacks: "function "x" of plugin "y" has no device
+ * body" (backend.c). */
+bool pass_on_device(const struct plan *plan, const struct pass *p, char *why, size_t size);
+
 /* Whether anything changes the column as the run goes on: a pass, or the integrator. */
 bool plan_changes(const struct plan *plan, size_t array, int column);
 
 /* For people (80 columns) and for machines. */
 void plan_print(const struct plan *plan, FILE *out);
 cJSON *plan_json(const struct plan *plan);
+
+/* What an assignment does, for a device; NULL: its expression cannot be told there. */
+const sph_device_point *assignment_device(const struct assignment *a);
 
 /* One use of an item: see struct use. */
 int use_init(struct use *u, const struct entry *entry, const sph_item *item, const sph_life *life,

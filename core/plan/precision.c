@@ -77,6 +77,10 @@ static void keep_doubles(struct plan *plan, bool **doubles)
         doubles[a][x] =
             doubles[a][x] || plan->dim < 3 || plan->n_frame > 1 || is_summed(plan, a, x);
         doubles[a][h] = doubles[a][h] || plan->n_frame > 1 || plan_changes(plan, a, h);
+        /* A device holds everything in doubles: what a destination does alone it does in them. Sweeps
+         * in floats read mirrors. */
+        for (size_t c = 0; plan->on_device && c < plan->array[a].p.n_column; c++)
+            doubles[a][c] = true;
     }
 }
 

@@ -163,7 +163,7 @@ static int check_function(const sph_function *f, struct error *e)
                          REACH_MAX);
     if (f->shape == SPH_POINT && check_no_sources(&f->item->props, "a point function", e))
         return -1;
-    if (check_sweeps(f, e) || check_loop(f, e) || (f->device && check_device_body(f, e)) ||
+    if (check_sweeps(f, e) || check_loop(f, e) || check_devices(f, e) ||
         check_rates(&f->rates, &f->item->props, e))
         return -1;
     return check_reductions(&f->reductions, &f->item->props, e);
@@ -188,7 +188,7 @@ static int check_eos(const sph_eos *eos, struct error *e)
         return error_set(e, EXIT_REFUSED, "run is NULL");
     if (!writes_any(&eos->item->props, NULL))
         return error_set(e, EXIT_REFUSED, "props: none is written");
-    if (check_no_sources(&eos->item->props, "an equation of state", e))
+    if (check_no_sources(&eos->item->props, "an equation of state", e) || check_device_eos(eos, e))
         return -1;
     if (!eos->inverse)
         return eos->inverse_props.count == 0

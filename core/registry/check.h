@@ -26,8 +26,10 @@ int check_props(const sph_list *props, const char *list, struct error *e);
 /* The property of that name in a list of sph_prop, or NULL. */
 const sph_prop *check_find_prop(const sph_list *props, const char *name);
 
-/* The body for a device of a function that has one, in check_device.c. */
-int check_device_body(const sph_function *f, struct error *e);
+/* The bodies for a device of a function or an equation of state, as far as it has them, in
+ * check_device.c. */
+int check_devices(const sph_function *f, struct error *e);
+int check_device_eos(const sph_eos *eos, struct error *e);
 
 /* Knots, powers, support and integral, in check_kernel.c. */
 int check_kernel(const sph_kernel *k, struct error *e);

@@ -6,6 +6,7 @@
 #include "registry/reach.h"
 
 #include <stddef.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,6 +21,7 @@ static const size_t first_step = UP_TO(sph_step, name);
 static const size_t first_term = UP_TO(sph_kernel_term, reserved);
 static const size_t first_value = UP_TO(sph_device_value, type);
 static const size_t first_device = UP_TO(sph_device_body, param);
+static const size_t first_point = UP_TO(sph_device_point, fail);
 static const size_t first_item = UP_TO(sph_item, props);
 static const size_t first_life = UP_TO(sph_life, destroy);
 static const size_t first_population = UP_TO(sph_population, born_props);
@@ -217,10 +219,38 @@ static int copy_device(void **memory, const sph_device_body **device, struct err
     return 0;
 }
 
+/* `of`: which member of the descriptor. */
+static int copy_point(void **memory, const sph_device_point **point, const char *of,
+                      struct error *e)
+{
+    static const char *const names[] = {"in", "out", "inout", "param", "state"};
+    sph_device_point *out;
+    char what[64];
+
+    if (!*point)
+        return 0;
+    out = take(memory, sizeof(*out), e);
+    if (!out || copy_struct(out, sizeof(*out), *point, first_point, of, e))
+        return -1;
+    sph_list *const lists[] = {&out->in, &out->out, &out->inout, &out->param, &out->state};
+    for (size_t i = 0; i < sizeof(names) / sizeof(names[0]); i++) {
+        snprintf(what, sizeof(what), "%s of %s", names[i], of);
+        if (copy_values(memory, lists[i], what, e))
+            return -1;
+    }
+    snprintf(what, sizeof(what), "fail of %s", of);
+    if (copy_list(memory, &out->fail, sizeof(const char *), sizeof(const char *), what, e))
+        return -1;
+    *point = out;
+    return 0;
+}
+
 static int copy_function(void **memory, sph_function *f, struct error *e)
 {
     if (copy_life(memory, &f->life, e) || copy_device(memory, &f->device, e) ||
-        copy_rates(memory, &f->rates, e))
+        copy_point(memory, &f->device_run, "device_run", e) ||
+        copy_point(memory, &f->device_before, "device_before", e) ||
+        copy_point(memory, &f->device_after, "device_after", e) || copy_rates(memory, &f->rates, e))
         return -1;
     /* Left out, that is zero, it is its default. */
     if (f->reach_scale == 0)
@@ -231,7 +261,7 @@ static int copy_function(void **memory, sph_function *f, struct error *e)
 
 static int copy_eos(void **memory, sph_eos *eos, struct error *e)
 {
-    if (copy_life(memory, &eos->life, e))
+    if (copy_life(memory, &eos->life, e) || copy_point(memory, &eos->device, "device", e))
         return -1;
     return copy_props(memory, &eos->inverse_props, "inverse_props", e);
 }

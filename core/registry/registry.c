@@ -427,6 +427,54 @@ fail:
     return error_prefix(e, "plugin %s", path);
 }
 
+static sph_status nothing_to_do(const sph_host *host)
+{
+    (void)host;
+    return SPH_OK;
+}
+
+int registry_add_texts(struct registry *r, const struct registry_texts *texts, size_t *failed,
+                       struct error *e)
+{
+    const sph_plugin descriptor = {.size = (uint32_t)sizeof(descriptor),
+                                   .magic = SPH_PLUGIN_MAGIC,
+                                   .abi_major = SPH_ABI_MAJOR,
+                                   .abi_minor = SPH_ABI_MINOR,
+                                   .name = texts->name,
+                                   .version = texts->version,
+                                   .license = "",
+                                   .doc = texts->doc,
+                                   .init = nothing_to_do};
+    const size_t n_entry = r->n_entry;
+    struct plugin p = {0}, *grown = realloc(r->plugin, (r->n_plugin + 1) * sizeof(*grown));
+
+    *failed = texts->n;
+    if (!grown)
+        return error_memory(e, "the registry", (r->n_plugin + 1) * sizeof(*grown));
+    r->plugin = grown;
+    if (fill_plugin(&p, texts->path, &descriptor, e))
+        goto fail;
+    if (registry_plugin(r, p.name)) {
+        error_set(e, EXIT_REFUSED, "its functions are the plugin \"%s\", but %s has that name",
+                  p.name, registry_plugin(r, p.name)->path);
+        goto fail;
+    }
+    r->plugin[r->n_plugin] = p;
+    for (size_t i = 0; i < texts->n; i++) {
+        if (add_item(r, KIND_FUNCTION, texts->function[i], e)) {
+            *failed = i;
+            goto fail;
+        }
+        r->entry[r->n_entry - 1].text = true;
+    }
+    r->n_plugin++;
+    return 0;
+fail:
+    drop_entries(r, n_entry);
+    plugin_free(&p);
+    return -1;
+}
+
 /* -- Asking -------- */
 
 const struct plugin *registry_plugin(const struct registry *r, const char *name)
@@ -490,4 +538,18 @@ void registry_reason(struct registry *r, sph_status status, char *out, size_t si
         snprintf(out, size, "status %d (it gave no reason)", (int)status);
     r->last.text[0] = '\0';
     pthread_mutex_unlock(&g->mutex);
+}
+
+bool entry_on_device(const struct entry *x)
+{
+    const sph_function *f;
+
+    if (x->kind == KIND_EOS)
+        return entry_eos(x)->device != NULL;
+    if (x->kind != KIND_FUNCTION)
+        return true;
+    f = entry_function(x);
+    if (f->shape == SPH_POINT)
+        return f->device_run != NULL;
+    return f->device && (!f->before || f->device_before) && (!f->after || f->device_after);
 }

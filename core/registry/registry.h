@@ -35,6 +35,7 @@ struct entry {
     const sph_state *state;           /* or NULL */
     const char *const *part;          /* of a function that does the work of n_part others */
     size_t n_part;
+    bool text;    /* of a function: it has no native code, only a text for devices */
     void *memory; /* private: what the copies lie in */
 };
 
@@ -68,6 +69,18 @@ void registry_fini(struct registry *r);
  * close(handle) when it is done with the plugin; close may be NULL. [main] */
 int registry_add(struct registry *r, const char *path, sph_plugin_entry_fn entry, void *handle,
                  void (*close)(void *handle), struct error *e);
+
+/* Functions that come as texts for devices, from no file: registered together as the plugin `name`, checked
+ * as any plugin's. Their `run`, `before` and `after` are there and fail. What they point to is copied, but
+ * for strings, which outlive the registry. On failure *failed is the index of the one that is wrong, or n,
+ * and nothing is registered. [main] */
+struct registry_texts {
+    const char *name, *version, *doc, *path;
+    const sph_function *const *function;
+    size_t n;
+};
+int registry_add_texts(struct registry *r, const struct registry_texts *texts, size_t *failed,
+                       struct error *e);
 
 /* For extensions, whose functions a plugin calls in its init: does one run now; the plugin is to be
  * refused with this sentence (returns SPH_E_INVALID). */
@@ -115,6 +128,10 @@ static inline const sph_life *entry_life(const struct entry *x)
            : x->kind == KIND_EXACT  ? entry_exact(x)->life
                                     : NULL;
 }
+
+/* Whether it has bodies for a device in place of all that it does there: a function or an equation of
+ * state. Of other kinds: true, for there is nothing of theirs to run. */
+bool entry_on_device(const struct entry *x);
 
 /* Element i of a list of the ABI, whatever its stride. */
 static inline const void *list_at(const sph_list *l, uint32_t i)

@@ -6,7 +6,7 @@
  * since there were lists is seen. What follows the last evaluation of a step may wait for the beginning of
  * the next and be part of its program (run_settle). */
 #include "base/clones.h"
-#include "run/run.h"
+#include "run/device.h"
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
@@ -363,6 +363,8 @@ static void trade(struct plan_array *a)
 /* What was left of the step before, then operations [from, to) of this one. */
 static int advance(struct run *r, size_t from, size_t to, struct error *e)
 {
+    if (r->device)
+        return run_device_advance(r, from, to, e);
     const double begin = omp_get_wtime();
     const struct integrator *table = r->plan->integrator;
     bool saves = false;

@@ -11,9 +11,8 @@
  * momentum relative to sum m |v|. */
 static int take_totals(struct loop *l, struct error *e)
 {
-    if (run_settle(&l->run, e))
+    if (run_settle(&l->run, e) || run_totals(&l->run, &l->last, e))
         return -1;
-    run_totals(&l->run, &l->last);
     const struct totals *a = &l->first, *b = &l->last;
     double scale = fmax(fabs(totals_energy(a)), fabs(a->kinetic) + fabs(a->internal));
     double drift = scale > 0.0 ? (totals_energy(b) - totals_energy(a)) / scale
@@ -52,7 +51,7 @@ static int choose_dt(struct loop *l, double *dt, struct error *e)
 {
     struct run *r = &l->run;
     double full = isnan(l->scene->time.dt) ? r->plan->cfl * r->dt_bound : l->scene->time.dt;
-    if (isnan(full) && finite_trace(r, e))
+    if (isnan(full) && (run_fetch(r, e) || finite_trace(r, e)))
         return -1;
     if (isnan(full))
         return watch_fail(r, &(struct sign){.cause = WATCH_NOT_FINITE}, e,
@@ -119,7 +118,7 @@ static int after_step(struct loop *l, struct error *e)
     /* Sums over all particles: where they are written. Rates are looked at in every evaluation. */
     if (logged && take_totals(l, e))
         return -1;
-    if (!isfinite(totals_energy(&l->last)) && finite_trace(r, e))
+    if (!isfinite(totals_energy(&l->last)) && (run_fetch(r, e) || finite_trace(r, e)))
         return -1;
     if (!isfinite(totals_energy(&l->last)))
         return watch_fail(r, &(struct sign){.cause = WATCH_NOT_FINITE}, e,
@@ -127,7 +126,7 @@ static int after_step(struct loop *l, struct error *e)
     if (logged && (watch_energy(r, &l->first, &l->last, e) || loop_log(l, e)))
         return -1;
     if (!last && measures_due(&l->measures) &&
-        (run_settle(r, e) || measures_take(&l->measures, MEASURES_ON_THE_WAY, e)))
+        (run_look(r, e) || measures_take(&l->measures, MEASURES_ON_THE_WAY, e)))
         return -1;
     watch_step(r);
     while (by_time && l->next_log <= r->time)
@@ -147,13 +146,14 @@ static int start(struct loop *l, struct error *e)
     r->look = true;
     if (run_passes(r, MOMENT_START, e) || run_passes(r, MOMENT_EVALUATE, e))
         return -1;
-    run_totals(r, &l->first);
-    if (take_totals(l, e))
+    if (run_totals(r, &l->first, e) || take_totals(l, e))
         return -1;
     l->next_output = 1;
     l->next_log =
         isfinite(l->scene->output.log_every) ? l->begin + l->scene->output.log_every : INFINITY;
     l->ended = finished(l);
+    if (run_fetch(r, e))
+        return -1;
     return loop_log(l, e) || loop_snapshot(l, e) || measures_take(&l->measures, MEASURES_START, e)
                ? -1
                : 0;
@@ -181,9 +181,11 @@ static int steps(struct loop *l, struct error *e)
         /* The last evaluation was in mid-step: bring what is derived up to the end. */
         if (run_passes(r, MOMENT_EVALUATE, e))
             return -1;
-    } else if (watch_state(r, e)) {
+    } else if (run_fetch(r, e) || watch_state(r, e)) {
         return -1;
     }
+    if (run_fetch(r, e))
+        return -1;
     if (measures_take(&l->measures, MEASURES_END, e))
         return -1;
     r->cost.loop = loop_seconds(l);

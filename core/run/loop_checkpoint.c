@@ -122,7 +122,7 @@ int loop_checkpoint(struct loop *l, struct error *e)
         return 0;
     output_checkpoint_name(name, sizeof name, (unsigned long long)l->run.step);
     char *temporary = output_begin(l->out, name);
-    int status = temporary ? 0 : error_memory(e, "a path", 1);
+    int status = temporary ? run_fetch(&l->run, e) : error_memory(e, "a path", 1);
     if (!status)
         status = csv_sync(&l->log.csv, e); /* rows before this step are not written again */
     if (!status)

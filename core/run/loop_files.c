@@ -66,7 +66,7 @@ int loop_snapshot(struct loop *l, struct error *e)
     char *temporary = output_begin(l->out, name);
     int status = all && temporary ? 0 : error_memory(e, "a snapshot", plan->n_array * sizeof *all);
     if (!status)
-        status = run_settle(&l->run, e);
+        status = run_look(&l->run, e);
     if (!status) {
         for (size_t a = 0; a < plan->n_array; a++)
             all[a] = plan->array[a].p;

@@ -65,24 +65,31 @@ int run_mirror(struct run *r, size_t array, int column, struct error *e)
 int run_mirror_frame(struct run *r, struct error *e)
 {
     const struct plan *plan = r->plan;
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (int c = 0; c < plan->dim; c++)
+        for (size_t a = 0; a < plan->n_array; a++) {
+            const struct plan_array *pa = &plan->array[a];
+            const struct column *x = &pa->p.column[pa->position];
+            const double *at = (const double *)x->data + (size_t)c * x->plane;
+            for (size_t i = 0; i < pa->p.n + pa->p.n_ghost; i++) {
+                low[c] = at[i] < low[c] ? at[i] : low[c];
+                high[c] = at[i] > high[c] ? at[i] : high[c];
+            }
+        }
+    return run_mirror_frame_of(r, low, high, e);
+}
+
+int run_mirror_frame_of(struct run *r, const double *low, const double *high, struct error *e)
+{
+    const struct plan *plan = r->plan;
     double longest = 0.0, h = INFINITY, h_high = 0.0;
     for (size_t a = 0; a < plan->n_array; a++) {
         h = fmin(h, r->h_low[a]);
         h_high = fmax(h_high, r->h_high[a]);
     }
     for (int c = 0; c < plan->dim; c++) {
-        double low = INFINITY, high = -INFINITY;
-        for (size_t a = 0; a < plan->n_array; a++) {
-            const struct plan_array *pa = &plan->array[a];
-            const struct column *x = &pa->p.column[pa->position];
-            const double *at = (const double *)x->data + (size_t)c * x->plane;
-            for (size_t i = 0; i < pa->p.n + pa->p.n_ghost; i++) {
-                low = at[i] < low ? at[i] : low;
-                high = at[i] > high ? at[i] : high;
-            }
-        }
-        r->centre[c] = low <= high ? low + 0.5 * (high - low) : 0.0;
-        longest = low <= high ? fmax(longest, high - low) : longest;
+        r->centre[c] = low[c] <= high[c] ? low[c] + 0.5 * (high[c] - low[c]) : 0.0;
+        longest = low[c] <= high[c] ? fmax(longest, high[c] - low[c]) : longest;
     }
     /* Room to move in until the lists are made anew, and for what lies beyond the domain then. */
     longest = 1.05 * longest + 4.0 * plan->kernel.support * plan->reach_scale * h_high;

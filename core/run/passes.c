@@ -2,6 +2,7 @@
  * sweeps repeated where a pass iterates, reductions taken. */
 #include "run/chunks.h"
 #include "run/closing.h"
+#include "run/device.h"
 #include "run/watch.h"
 #include <math.h>
 #include <omp.h>
@@ -203,6 +204,8 @@ static void bound_dt(struct run *r)
 
 int run_passes(struct run *r, enum moment moment, struct error *e)
 {
+    if (r->device)
+        return run_device_passes(r, moment, e);
     r->watch->done = 0;
     if (moment == MOMENT_EVALUATE && watch_state(r, e))
         return -1;

@@ -1,7 +1,7 @@
 /* run/population.c -- particles that functions remove and create, done once at the end of a step: what
  * they wrote in int32 properties is carried out array by array, in the order of the particles, so
  * that a run repeats itself. */
-#include "run/run.h"
+#include "run/device.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -112,13 +112,29 @@ static int apply(struct run *r, const struct pass *p, const sph_population *d, s
     return status;
 }
 
+static bool is_wanted(const struct pass *p)
+{
+    return p->moment == MOMENT_FINISH && p->use.entry && p->use.entry->population;
+}
+
 int run_population(struct run *r, struct error *e)
 {
+    const bool made = r->lists_made;
+    bool any = false;
+    for (size_t i = 0; i < r->plan->n_pass; i++)
+        any = any || is_wanted(&r->plan->pass[i]);
+    if (!any)
+        return 0;
+    /* Of a run on a device the host does this as well: a particle is made or removed now and then. */
+    if (r->device && run_fetch(r, e))
+        return -1;
+    r->lists_made = true;
     for (size_t i = 0; i < r->plan->n_pass; i++) {
         const struct pass *p = &r->plan->pass[i];
-        if (p->moment == MOMENT_FINISH && p->use.entry && p->use.entry->population &&
-            apply(r, p, p->use.entry->population, e))
+        if (is_wanted(p) && apply(r, p, p->use.entry->population, e))
             return -1;
     }
-    return 0;
+    const bool changed = !r->lists_made;
+    r->lists_made = r->lists_made && made;
+    return r->device && changed ? run_device_put(r, e) : 0;
 }

@@ -21,6 +21,7 @@ void origin_free(struct origin *o)
     free(o->plugins);
     free(o->precision);
     free(o->processor);
+    free(o->device);
     *o = (struct origin){0};
 }
 
@@ -60,9 +61,10 @@ int origin_make(struct origin *o, const struct plan *plan, uint32_t path, const 
     o->plugins = plugins_of(plan->registry);
     o->precision = strdup(precision_name[plan->precision]);
     o->processor = strdup(processor());
+    o->device = strdup(plan->on_device ? "opencl" : "cpu");
     o->set = calloc(d->n_set + 1, sizeof *o->set);
     bool good = o->version && o->scene && o->scene_path && o->plugins && o->precision &&
-                o->processor && o->set;
+                o->processor && o->device && o->set;
     for (; good && o->n_set < d->n_set; o->n_set++) {
         o->set[o->n_set] = strdup(d->set[o->n_set]);
         good = o->set[o->n_set] != NULL;
@@ -79,11 +81,11 @@ int origin_store(struct origin *o, struct store *s, struct error *e)
     if (store_text(s, "version", &o->version, e) || store_text(s, "scene", &o->scene, e) ||
         store_text(s, "scene_path", &o->scene_path, e) ||
         store_text(s, "plugins", &o->plugins, e) || store_text(s, "precision", &o->precision, e) ||
-        store_text(s, "processor", &o->processor, e) || store_u64(s, "path", &o->path, e) ||
-        store_count(s, "n_set", &n, e))
+        store_text(s, "processor", &o->processor, e) || store_text(s, "device", &o->device, e) ||
+        store_u64(s, "path", &o->path, e) || store_count(s, "n_set", &n, e))
         return -1;
     if (!o->version || !o->scene || !o->scene_path || !o->plugins || !o->precision ||
-        !o->processor || n > 100000)
+        !o->processor || !o->device || n > 100000)
         return store_broken(s, e, "it does not tell of its scene");
     if (s->reading)
         o->set = calloc(n + 1, sizeof *o->set);
@@ -303,6 +305,9 @@ int resume_check(const struct resume *r, const struct plan *plan, uint32_t path,
     if (strcmp(o->precision, precision_name[plan->precision]) != 0)
         return error_set(e, EXIT_USAGE, "%s was made in precision \"%s\", not \"%s\"", r->path,
                          o->precision, precision_name[plan->precision]);
+    if ((strcmp(o->device, "cpu") != 0) != plan->on_device)
+        return error_set(e, EXIT_USAGE, "%s was made with --device %s, not %s", r->path, o->device,
+                         plan->on_device ? "opencl" : "cpu");
     if (o->path != path)
         return error_set(e, EXIT_USAGE, "%s was made with --path %s, not %s", r->path,
                          o->path < paths ? name[o->path] : "of another kind",

@@ -16,6 +16,7 @@ struct origin {
     char *plugins;   /* a line each: name, tab, version */
     char *precision; /* as the plan had it */
     char *processor; /* what of its instructions changes last bits */
+    char *device;    /* "cpu" or "opencl" */
     uint64_t path;   /* how pair loops ran: SPH_PATH_... */
 };
 

@@ -1,4 +1,5 @@
 /* run/run.c -- makes and frees a run's working memory. */
+#include "run/device.h"
 #include "run/watch.h"
 #include <math.h>
 #include <stdlib.h>
@@ -94,7 +95,22 @@ int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool 
     }
     if (hold(plan, e) || watch_open(r, e))
         return -1;
+    if (plan->on_device && audit)
+        return error_set(e, EXIT_USAGE,
+                         "--audit watches what plugins do on the processor: leave --device out");
+    if (plan->on_device && run_device_open(r, e))
+        return -1;
     return audit ? audit_open(r, e) : 0;
+}
+
+int run_fetch(struct run *r, struct error *e)
+{
+    return r->device ? run_device_fetch(r, e) : 0;
+}
+
+int run_look(struct run *r, struct error *e)
+{
+    return run_settle(r, e) || run_fetch(r, e) ? -1 : 0;
 }
 
 void run_free(struct run *r)
@@ -102,6 +118,7 @@ void run_free(struct run *r)
     size_t n = r->plan ? r->plan->n_array : 0;
     audit_close(r);
     watch_close(r);
+    run_device_close(r);
     for (size_t a = 0; a < n; a++) {
         if (r->ghosts)
             ghosts_fini(&r->ghosts[a]);

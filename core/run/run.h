@@ -12,6 +12,7 @@
 
 struct audit;
 struct watch;
+struct run_device;
 
 /* Sums over all real particles. */
 struct totals {
@@ -57,10 +58,11 @@ struct run {
     struct sph_run hooks; /* what a batch's `run` points to */
     double proposed;      /* bound on the next dt, cfl not applied; INFINITY: none */
     struct run_cost cost;
-    struct audit *audit; /* NULL: off */
-    struct watch *watch; /* watch.h */
-    bool look;           /* all that passes write in this step is looked at: finite.c */
-    bool suspect;        /* a rate may be no number */
+    struct run_device *device; /* device.h; NULL: on the processor */
+    struct audit *audit;       /* NULL: off */
+    struct watch *watch;       /* watch.h */
+    bool look;                 /* all that passes write in this step is looked at: finite.c */
+    bool suspect;              /* a rate may be no number */
     /* advance.c */
     double correct; /* while a correction follows the evaluation: its factor; else 0 */
     bool defer;     /* the next step may do what is left of this one: run_settle */
@@ -117,6 +119,9 @@ int run_mirror(struct run *r, size_t array, int column, struct error *e);
  * floats would not tell particles apart. */
 int run_mirror_frame(struct run *r, struct error *e);
 
+/* The same for places between low and high, of real particles and ghosts. */
+int run_mirror_frame_of(struct run *r, const double *low, const double *high, struct error *e);
+
 /* mirrors.c: of n positions' component k from `first` on; false: some have no place in the frame. */
 bool mirror_places(const struct run *r, const struct column *c, uint32_t k, size_t first, size_t n);
 
@@ -149,6 +154,9 @@ int run_population(struct run *r, struct error *e);
 int run_advance(struct run *r, struct error *e);
 /* advance.c. Does what was left, if anything: before anybody looks at the state. */
 int run_settle(struct run *r, struct error *e);
+/* run.c. The host's columns are what the run's are, wherever that is; run_look: settled besides. */
+int run_fetch(struct run *r, struct error *e);
+int run_look(struct run *r, struct error *e);
 
 /* finite.c: each fails (EXIT_RUN) naming pass, property, particle and place. What a pass has
  * just written (working storage aside, which may hold anything) is a number. */
@@ -171,7 +179,12 @@ bool any_not_finite(const double *value, size_t n);
 bool any_not_finite4(const float *value, size_t n);
 
 /* totals.c */
-void run_totals(const struct run *r, struct totals *t);
+int run_totals(struct run *r, struct totals *t, struct error *e);
+/* Where a reduction of this use is summed up; NULL: nowhere. */
+static inline double *totals_of(struct totals *t, uint32_t use)
+{
+    return use == SPH_USE_INTERNAL ? &t->internal : use == SPH_USE_POTENTIAL ? &t->potential : NULL;
+}
 
 /* audit.c: proves that passes touch only what they declare. */
 int audit_open(struct run *r, struct error *e);

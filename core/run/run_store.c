@@ -1,6 +1,7 @@
 /* run/run_store.c -- a run's working state goes into a checkpoint and comes back with every bit: particles and
  * ghosts, lists and what they were made from, what the integrator has left to do, plugins' own states. Nothing
  * is settled or made anew for it, since that would change the run. */
+#include "run/device.h"
 #include "run/watch.h"
 #include <stdlib.h>
 #include <string.h>
@@ -211,8 +212,8 @@ static int states_store(struct run *r, struct store *s, struct error *e)
 int run_store(struct run *r, struct store *s, struct error *e)
 {
     return numbers_store(r, s, e) || tables_store(r, s, e) || costs_store(r, s, e) ||
-                   arrays_store(r, s, e) || lists_store(r, s, e) || watch_store(r, s, e) ||
-                   states_store(r, s, e)
+                   arrays_store(r, s, e) || (r->device ? run_device_store : lists_store)(r, s, e) ||
+                   watch_store(r, s, e) || states_store(r, s, e)
                ? -1
                : 0;
 }

@@ -1,6 +1,6 @@
 /* run/totals.c -- conserved quantities, summed in blocks of particles and the blocks in order: the same
  * bits for any number of threads. */
-#include "run/run.h"
+#include "run/device.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -87,20 +87,21 @@ static void add_array(const struct run *r, const struct plan_array *a, struct to
     free(part);
 }
 
-void run_totals(const struct run *r, struct totals *t)
+int run_totals(struct run *r, struct totals *t, struct error *e)
 {
     *t = (struct totals){0};
+    if (r->device)
+        return run_device_totals(r, t, e);
     for (size_t a = 0; a < r->plan->n_array; a++)
         add_array(r, &r->plan->array[a], t);
     for (size_t i = 0; i < r->plan->n_reduction; i++) {
         const struct reduction *d = &r->plan->reduction[i];
-        double *sum = d->declared->use == SPH_USE_INTERNAL    ? &t->internal
-                      : d->declared->use == SPH_USE_POTENTIAL ? &t->potential
-                                                              : NULL;
+        double *sum = totals_of(t, d->declared->use);
         if (!sum)
             continue;
         /* Anew, and not what the pass came to: the integrator has advanced it since. */
         *sum += run_reduce(r, d);
         t->has_energy = true;
     }
+    return 0;
 }

@@ -425,6 +425,8 @@ int watch_time_step(struct run *r, double dt, double span, struct error *e)
     w->longest = dt < INFINITY ? fmax(w->longest, dt) : w->longest;
     if (!stands && (!collapsed || rule->action == WATCH_OFF))
         return 0;
+    if (run_fetch(r, e))
+        return -1;
     const struct sign s = who_bounds(r, dt);
     if (!stands && watch_counted(r, &s, 1))
         return 0;
@@ -470,6 +472,8 @@ int watch_energy(struct run *r, const struct totals *first, const struct totals 
     const double scale = !isnan(rule->scale) ? rule->scale : now->has_energy ? parts : 0.0;
     if (rule->action == WATCH_OFF || !(scale > 0.0) || !(fabs(grown) > rule->limit * scale))
         return 0;
+    if (run_fetch(r, e))
+        return -1;
     const struct sign s = who_moves(r);
     if (watch_counted(r, &s, 1))
         return 0;

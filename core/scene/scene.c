@@ -409,7 +409,7 @@ static int compile(struct scene *s, const cJSON *root, struct error *e)
     static const char *const keys[] = {
         "$schema",   "title",      "dimensions", "plugins",  "units",  "domain", "materials",
         "particles", "boundaries", "scheme",     "kernel",   "time",   "limits", "neighbours",
-        "precision", "compare",    "probes",     "profiles", "output", "watch"};
+        "precision", "compare",    "probes",     "profiles", "output", "watch",  "functions"};
     if (!root->child)
         return document_fail(s->doc, root, e, "the scene is empty");
     if (json_keys(s->doc, root, keys, COUNT(keys), e) < 0 || compile_head(s, root, e) < 0 ||
@@ -418,6 +418,7 @@ static int compile(struct scene *s, const cJSON *root, struct error *e)
         compile_limits(s, json_get(root, "limits"), e) < 0 ||
         scene_particles(s, json_get(root, "particles"), e) < 0 ||
         compile_boundaries(s, json_get(root, "boundaries"), e) < 0 ||
+        scene_functions(s, json_get(root, "functions"), e) < 0 ||
         scene_scheme(s, json_get(root, "scheme"), e) < 0 ||
         compile_kernel(s, json_get(root, "kernel"), e) < 0 ||
         scene_time(s, json_get(root, "time"), e) < 0 ||

@@ -204,7 +204,8 @@ struct scene_watch {
     const char *where; /* escaped: region that nobody may leave; or NULL */
 };
 
-struct scene_memory; /* what the structures stand in: private to scene.c */
+struct scene_function; /* functions.h */
+struct scene_memory;   /* what the structures stand in: private to scene.c */
 
 struct scene {
     struct document *doc; /* not owned; outlives the scene */
@@ -216,6 +217,8 @@ struct scene {
     const char *units; /* "none", "SI", "cgs" */
     uint64_t limit;    /* particles that the scene may make: "limits": {"particles": ..} */
     struct box box;
+    struct scene_function *function;
+    size_t n_function;
     struct scene_material *material;
     size_t n_material;
     struct scene_array *array;
@@ -249,6 +252,12 @@ struct scene {
         const char *manager; /* NULL: the plan chooses */
     } neighbours;            /* optional key "neighbours": {"skin": 0.1, "manager": "octree"} */
     const char *precision;   /* "double", "mixed", "single"; NULL: the scheme's */
+    /* The command line's, as `precision` may be. */
+    struct {
+        bool opencl; /* else the processor */
+        bool only;   /* no falling back to it */
+        size_t number;
+    } device;
     struct scene_watch watch[WATCH_CAUSES];
     struct scene_compare *compare;
     size_t n_compare;

@@ -31,10 +31,19 @@ int scene_name(const struct scene *s, const cJSON *node, bool dash, struct error
 
 int scene_particles(struct scene *s, const cJSON *node, struct error *e);
 int scene_fill(struct scene *s, const cJSON *node, struct scene_fill *fill, struct error *e);
+int scene_functions(struct scene *s, const cJSON *node, struct error *e);
 int scene_scheme(struct scene *s, const cJSON *node, struct error *e);
 int scene_compares(struct scene *s, const cJSON *node, struct error *e);
 int scene_probes(struct scene *s, const cJSON *node, struct error *e);
 int scene_profiles(struct scene *s, const cJSON *node, struct error *e);
+
+/* scene_declared.c: "properties", "parameters", "rates" and "reductions" of a function. */
+struct scene_function;
+int scene_declared(struct scene *s, const cJSON *node, struct scene_function *f, struct error *e);
+/* Whether `name` is a name of C that is none of the SDK's. */
+bool scene_is_identifier(const char *name);
+/* Whether a body has the name already, or C or OpenCL C keep it for themselves. side: one that gets _i or _j. */
+bool scene_is_taken(const char *name, bool side);
 
 /* scene_sample.c: parts of what is measured. Member "where", if given: an expression of a particle's
  * position. */

@@ -7,11 +7,10 @@ static const sph_prop props[] = {
     SPH_PROP("u", "J/kg", "specific energy of compression", SPH_SCALAR, SPH_DST_READ, NAN),
 };
 
-static sph_status run(const sph_batch *b)
-{
-    (void)b;
-    return SPH_OK; /* the reduction is all */
-}
+#define SPH_POINT_LOOP run
+#define SPH_POINT_BODY "energy.body.h"
+#define SPH_POINT_DEVICE energy_device
+#include <sph/point-loop.h>
 
 static const sph_reduction reductions[] = {
     SPH_REDUCTION("internal", "u", SPH_REDUCE_SUM, SPH_USE_INTERNAL),
@@ -31,5 +30,6 @@ const sph_function barotropic_energy = {
     .shape = SPH_POINT,
     .item = &item,
     .run = run,
+    .device_run = &energy_device,
     .reductions = SPH_LIST(reductions),
 };

@@ -24,15 +24,13 @@ static const sph_prop props[] = {
 #define SPH_LOOP_DEVICE momentum_device
 #include <sph/pair-loop.h>
 
-/* So that the scene's cfl is just C = c dt / h. */
-static sph_status finish(const sph_batch *b)
-{
-    const double *h = b->h_dst.data, *cs = b->dst[CS].data;
-    double *dt = b->dst[DT].data;
-    for (uint64_t i = b->first; i < b->first + b->count; i++)
-        dt[i] = h[i] / cs[i];
-    return SPH_OK;
-}
+#define SPH_POINT_LOOP finish
+#define SPH_POINT_IN(P_) P_(scalar, cs, CS)
+#define SPH_POINT_OUT(P_) P_(scalar, dt, DT)
+#define SPH_POINT_H
+#define SPH_POINT_BODY "finish.body.h"
+#define SPH_POINT_DEVICE momentum_finish
+#include <sph/point-loop.h>
 
 static const sph_rate rates[] = {
     SPH_RATE("v", "a", SPH_KICK),
@@ -63,4 +61,5 @@ const sph_function barotropic_momentum = {
     .reductions = SPH_LIST(reductions),
     .device = &momentum_device,
     .reals = SPH_F64 | SPH_F32,
+    .device_after = &momentum_finish,
 };

@@ -11,14 +11,12 @@ static const sph_prop props[] = {
     BAROTROPIC_P_RHO2(SPH_DST_WRITE),
 };
 
-static sph_status run(const sph_batch *b)
-{
-    const double *rho = b->dst[RHO].data, *p = b->dst[P].data;
-    double *p_rho2 = b->dst[P_RHO2].data;
-    for (uint64_t i = b->first; i < b->first + b->count; i++)
-        p_rho2[i] = p[i] / (rho[i] * rho[i]);
-    return SPH_OK;
-}
+#define SPH_POINT_LOOP run
+#define SPH_POINT_IN(P_) P_(scalar, rho, RHO) P_(scalar, p, P)
+#define SPH_POINT_OUT(P_) P_(scalar, p_rho2, P_RHO2)
+#define SPH_POINT_BODY "pressure.body.h"
+#define SPH_POINT_DEVICE pressure_device
+#include <sph/point-loop.h>
 
 static const sph_item item = {
     .size = SIZE(sph_item),
@@ -34,4 +32,5 @@ const sph_function barotropic_pressure = {
     .shape = SPH_POINT,
     .item = &item,
     .run = run,
+    .device_run = &pressure_device,
 };

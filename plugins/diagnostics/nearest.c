@@ -18,15 +18,12 @@ static const sph_prop props[] = {
 #define SPH_LOOP_DEVICE nearest_device
 #include <sph/pair-loop.h>
 
-/* One that is alone gets the support: snapshots and probes want a number, and farther it is. */
-static sph_status finish(const sph_batch *b)
-{
-    const double *h = b->h_dst.data;
-    double *nearest = b->dst[NEAREST].data;
-    for (uint64_t i = b->first; i < b->first + b->count; i++)
-        nearest[i] = fmin(nearest[i], b->kernel->support * h[i]);
-    return SPH_OK;
-}
+#define SPH_POINT_LOOP finish
+#define SPH_POINT_INOUT(P) P(scalar, nearest, NEAREST)
+#define SPH_POINT_H
+#define SPH_POINT_BODY "finish.body.h"
+#define SPH_POINT_DEVICE nearest_finish
+#include <sph/point-loop.h>
 
 static const sph_reduction reductions[] = {
     SPH_REDUCTION("nearest", "nearest", SPH_REDUCE_MIN, SPH_USE_NONE),
@@ -52,4 +49,5 @@ const sph_function nearest_function = {
     .reductions = SPH_LIST(reductions),
     .device = &nearest_device,
     .reals = SPH_F64 | SPH_F32,
+    .device_after = &nearest_finish,
 };

@@ -4,6 +4,9 @@
 
 #include <math.h>
 
+enum { RHO, U, P, CS };
+enum { GAMMA };
+
 static const sph_param params[] = {
     SPH_PARAM("gamma", "", "ratio of the specific heats", 5. / 3, 1.000001, 100),
 };
@@ -19,38 +22,17 @@ static const sph_prop inverse_props[] = {
     SPH_PROP("u", "J/kg", "specific internal energy", SPH_SCALAR, SPH_DST_WRITE, 0),
 };
 
-static sph_status only_double(const sph_batch *b)
-{
-    return b->host->fail(b->host, SPH_E_UNKNOWN,
-                         "ideal-gas: single precision is not implemented yet");
-}
-
-static sph_status run(const sph_batch *b)
-{
-    const double gamma = b->param[0];
-
-    if (b->real != SPH_F64)
-        return only_double(b);
-
-    const double *rho = b->dst[0].data;
-    const double *u = b->dst[1].data;
-    double *p = b->dst[2].data;
-    double *cs = b->dst[3].data;
-
-    for (uint64_t i = b->first; i < b->first + b->count; i++) {
-        p[i] = (gamma - 1) * rho[i] * u[i];
-        cs[i] = sqrt(gamma * (gamma - 1) * (u[i] > 0 ? u[i] : 0));
-    }
-    return SPH_OK;
-}
+#define SPH_POINT_LOOP run
+#define SPH_POINT_IN(P_) P_(scalar, rho, RHO) P_(scalar, u, U)
+#define SPH_POINT_OUT(P_) P_(scalar, p, P) P_(scalar, cs, CS)
+#define SPH_POINT_PARAM(P_) P_(gamma, GAMMA)
+#define SPH_POINT_BODY "ideal_gas.body.h"
+#define SPH_POINT_DEVICE ideal_gas_device
+#include <sph/point-loop.h>
 
 static sph_status inverse(const sph_batch *b)
 {
-    const double gamma = b->param[0];
-
-    if (b->real != SPH_F64)
-        return only_double(b);
-
+    const double gamma = b->param[GAMMA];
     const double *rho = b->dst[0].data;
     const double *p = b->dst[1].data;
     double *u = b->dst[2].data;
@@ -76,4 +58,5 @@ const sph_eos ideal_gas = {
     .run = run,
     .inverse = inverse,
     .inverse_props = SPH_LIST(inverse_props),
+    .device = &ideal_gas_device,
 };

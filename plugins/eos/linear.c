@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+enum { RHO, P, CS, U };
 enum { C0, RHO0, P0 };
 
 static const sph_param params[] = {
@@ -24,21 +25,13 @@ static const sph_prop inverse_props[] = {
     SPH_PROP("rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_WRITE, 0),
 };
 
-/* With e = rho / rho0 - 1: u = c0^2 (ln(1 + e) - e / (1 + e)) + p0 / rho0 e / (1 + e). */
-static sph_status run(const sph_batch *b)
-{
-    const double c0 = b->param[C0], rho0 = b->param[RHO0], p0 = b->param[P0];
-    const double *rho = b->dst[0].data;
-    double *p = b->dst[1].data, *cs = b->dst[2].data, *u = b->dst[3].data;
-
-    for (uint64_t i = b->first; i < b->first + b->count; i++) {
-        const double excess = (rho[i] - rho0) / rho0, part = excess / (1.0 + excess);
-        p[i] = c0 * c0 * (rho[i] - rho0) + p0;
-        cs[i] = c0;
-        u[i] = c0 * c0 * (log1p(excess) - part) + p0 / rho0 * part;
-    }
-    return SPH_OK;
-}
+#define SPH_POINT_LOOP run
+#define SPH_POINT_IN(P_) P_(scalar, rho, RHO)
+#define SPH_POINT_OUT(P_) P_(scalar, p, P) P_(scalar, cs, CS) P_(scalar, u, U)
+#define SPH_POINT_PARAM(P_) P_(c0, C0) P_(rho0, RHO0) P_(p0, P0)
+#define SPH_POINT_BODY "linear.body.h"
+#define SPH_POINT_DEVICE linear_device
+#include <sph/point-loop.h>
 
 static sph_status inverse(const sph_batch *b)
 {
@@ -72,4 +65,5 @@ const sph_eos linear = {
     .run = run,
     .inverse = inverse,
     .inverse_props = SPH_LIST(inverse_props),
+    .device = &linear_device,
 };

@@ -5,6 +5,7 @@
 
 #include <math.h>
 
+enum { RHO, P, CS };
 enum { C0, RHO0, GAMMA, P0 };
 
 static const sph_param params[] = {
@@ -23,44 +24,13 @@ static const sph_prop inverse_props[] = {
     SPH_PROP("rho", "kg/m^d", "density", SPH_SCALAR, SPH_DST_WRITE, 0),
 };
 
-/* a^7 and a^3, in this order of products. */
-static inline double seventh(double a)
-{
-    const double a2 = a * a;
-    return a2 * a2 * a2 * a;
-}
-
-static inline double cube(double a)
-{
-    return a * a * a;
-}
-
-/* Of one particle, by ratio^gamma and ratio^((gamma - 1) / 2). */
-#define TAIT(whole, half)                                                                          \
-    for (uint64_t i = b->first; i < b->first + b->count; i++) {                                    \
-        const double ratio = rho[i] * per_rho0;                                                    \
-        p[i] = modulus * ((whole)-1.0) + p0;                                                       \
-        cs[i] = c0 * (half);                                                                       \
-    }
-
-static sph_status run(const sph_batch *b)
-{
-    const double c0 = b->param[C0], rho0 = b->param[RHO0], gamma = b->param[GAMMA];
-    const double modulus = c0 * c0 * rho0 / gamma, per_rho0 = 1.0 / rho0, p0 = b->param[P0];
-    const double *restrict rho = b->dst[0].data;
-    double *restrict p = b->dst[1].data, *restrict cs = b->dst[2].data;
-
-    /* Water's exponent without a call, and several particles at a time. */
-    if (gamma == 7.0)
-        TAIT(seventh(ratio), cube(ratio))
-    else if (gamma == 3.0)
-        TAIT(cube(ratio), ratio)
-    else if (gamma == 1.0)
-        TAIT(ratio, 1.0)
-    else
-        TAIT(pow(ratio, gamma), pow(ratio, 0.5 * (gamma - 1.0)))
-    return SPH_OK;
-}
+#define SPH_POINT_LOOP run
+#define SPH_POINT_IN(P_) P_(scalar, rho, RHO)
+#define SPH_POINT_OUT(P_) P_(scalar, p, P) P_(scalar, cs, CS)
+#define SPH_POINT_PARAM(P_) P_(c0, C0) P_(rho0, RHO0) P_(gamma, GAMMA) P_(p0, P0)
+#define SPH_POINT_BODY "tait.body.h"
+#define SPH_POINT_DEVICE tait_device
+#include <sph/point-loop.h>
 
 static sph_status inverse(const sph_batch *b)
 {
@@ -97,4 +67,5 @@ const sph_eos tait = {
     .run = run,
     .inverse = inverse,
     .inverse_props = SPH_LIST(inverse_props),
+    .device = &tait_device,
 };

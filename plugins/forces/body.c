@@ -3,7 +3,7 @@
 #include <math.h>
 
 enum { X, V, A, PHI };
-enum { G };
+enum { GX, GY, GZ };
 
 static const sph_param params[] = {
     SPH_PARAM("gx", "m/s^2", "acceleration along x", 0.0, -1e300, 1e300),
@@ -19,22 +19,14 @@ static const sph_prop props[] = {
              SPH_DST_WRITE, 0.0),
 };
 
-static sph_status run(const sph_batch *b)
-{
-    double *phi = b->dst[PHI].data;
-    for (uint64_t i = b->first; i < b->first + b->count; i++)
-        phi[i] = 0.0;
-    for (uint32_t c = 0; c < b->dim; c++) {
-        const double g = b->param[G + c];
-        const double *x = (const double *)b->dst[X].data + (size_t)c * b->dst[X].plane;
-        double *a = (double *)b->dst[A].data + (size_t)c * b->dst[A].plane;
-        for (uint64_t i = b->first; i < b->first + b->count; i++) {
-            a[i] += g;
-            phi[i] -= g * x[i];
-        }
-    }
-    return SPH_OK;
-}
+#define SPH_POINT_LOOP run
+#define SPH_POINT_IN(P) P(vector, x, X)
+#define SPH_POINT_INOUT(P) P(vector, a, A)
+#define SPH_POINT_OUT(P) P(scalar, phi, PHI)
+#define SPH_POINT_PARAM(P) P(gx, GX) P(gy, GY) P(gz, GZ)
+#define SPH_POINT_BODY "uniform.body.h"
+#define SPH_POINT_DEVICE body_device
+#include <sph/point-loop.h>
 
 static const sph_rate rates[] = {
     SPH_RATE("v", "a", SPH_KICK),
@@ -59,6 +51,7 @@ const sph_function body_force = {
     .shape = SPH_POINT,
     .item = &item,
     .run = run,
+    .device_run = &body_device,
     .rates = SPH_LIST(rates),
     .reductions = SPH_LIST(reductions),
 };

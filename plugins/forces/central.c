@@ -4,7 +4,7 @@
 #include <math.h>
 
 enum { X, V, A, PHI, DT };
-enum { MU, N, EPS, CENTRE };
+enum { MU, N, EPS, CX, CY, CZ };
 
 static const sph_param params[] = {
     SPH_PARAM("mu", "m^(n+1)/s^2", "strength; less than 0 pushes away", NAN, -1e300, 1e300),
@@ -25,30 +25,14 @@ static const sph_prop props[] = {
              SPH_DST_WRITE, 0.0),
 };
 
-/* phi' = mu r s^-(n+1), s^2 = r^2 + eps^2. */
-static double potential(double mu, double n, double s2)
-{
-    return n > 1.0 || n < 1.0 ? mu / (1.0 - n) * pow(s2, 0.5 * (1.0 - n)) : 0.5 * mu * log(s2);
-}
-
-static sph_status run(const sph_batch *b)
-{
-    const double mu = b->param[MU], n = b->param[N], eps = b->param[EPS];
-    double *phi = b->dst[PHI].data, *dt = b->dst[DT].data;
-    for (uint64_t i = b->first; i < b->first + b->count; i++) {
-        double d[3] = {0.0, 0.0, 0.0}, s2 = eps * eps;
-        for (uint32_t c = 0; c < b->dim; c++) {
-            d[c] = ((const double *)b->dst[X].data)[c * b->dst[X].plane + i] - b->param[CENTRE + c];
-            s2 += d[c] * d[c];
-        }
-        const double strength = mu * pow(s2, -0.5 * (n + 1.0)); /* the frequency's square */
-        for (uint32_t c = 0; c < b->dim; c++)
-            ((double *)b->dst[A].data)[c * b->dst[A].plane + i] -= strength * d[c];
-        phi[i] = potential(mu, n, s2);
-        dt[i] = 1.0 / sqrt(fabs(strength));
-    }
-    return SPH_OK;
-}
+#define SPH_POINT_LOOP run
+#define SPH_POINT_IN(P) P(vector, x, X)
+#define SPH_POINT_INOUT(P) P(vector, a, A)
+#define SPH_POINT_OUT(P) P(scalar, phi, PHI) P(scalar, dt, DT)
+#define SPH_POINT_PARAM(P) P(mu, MU) P(n, N) P(eps, EPS) P(cx, CX) P(cy, CY) P(cz, CZ)
+#define SPH_POINT_BODY "central.body.h"
+#define SPH_POINT_DEVICE central_device
+#include <sph/point-loop.h>
 
 static const sph_rate rates[] = {
     SPH_RATE("v", "a", SPH_KICK),
@@ -75,6 +59,7 @@ const sph_function central_force = {
     .shape = SPH_POINT,
     .item = &item,
     .run = run,
+    .device_run = &central_device,
     .rates = SPH_LIST(rates),
     .reductions = SPH_LIST(reductions),
 };

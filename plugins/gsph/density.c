@@ -4,6 +4,7 @@
 #include "gsph.h"
 #include <math.h>
 #include <sph/kernel-value.h>
+#include <stdlib.h>
 
 enum { M, H, RHO, SLOPE, BUSY };
 enum { ETA, TOLERANCE };
@@ -49,32 +50,48 @@ static double own_weight(const sph_kernel_form *kernel, double eta)
     return (1.0 - others) / scale;
 }
 
-/* From the sums to the next h. A particle that is done keeps its h, so that its sums stay right. */
-static sph_status update(const sph_batch *b)
+/* The weight, once for all particles. */
+struct state {
+    double own; /* NaN: not known yet */
+};
+
+static sph_status create(const sph_host *host, const sph_config *config, uint32_t dim, void **out)
 {
-    const double eta = b->param[ETA], tolerance = b->param[TOLERANCE], d = b->dim;
-    const double own = own_weight(b->kernel, eta);
-    const double *m = gsph_plane(&b->dst[M], 0);
-    double *h = gsph_plane(&b->dst[H], 0), *rho = gsph_plane(&b->dst[RHO], 0);
-    double *slope = gsph_plane(&b->dst[SLOPE], 0);
-    int32_t *busy = b->dst[BUSY].data;
-    for (uint64_t i = b->first; i < b->first + b->count; i++) {
-        const double self = m[i] * own * pow(h[i], -d), fitting = m[i] * pow(eta / h[i], d);
-        rho[i] += self;
-        slope[i] -= d * self / h[i];
-        /* Newton's step of h^d rho(h), which rises with h wherever the others stand; that of rho(h) -
-         * fitting turns its sign where many of them are within a thin particle's support. */
-        double next = h[i] + (fitting - rho[i]) / (d * rho[i] / h[i] + slope[i]);
-        if (!(next > 0.7 * h[i]))
-            next = 0.7 * h[i];
-        if (next > 1.4 * h[i])
-            next = 1.4 * h[i];
-        busy[i] = fabs(next - h[i]) > tolerance * h[i];
-        if (busy[i])
-            h[i] = next;
-    }
+    struct state *state = malloc(sizeof(*state));
+    (void)config;
+    (void)dim;
+    if (!state)
+        return host->fail(host, SPH_E_NOMEM, "gsph-density: no memory for its state");
+    state->own = NAN;
+    *out = state;
     return SPH_OK;
 }
+
+static void destroy(const sph_host *host, void *state)
+{
+    (void)host;
+    free(state);
+}
+
+static sph_status prepare(const sph_batch *b)
+{
+    struct state *state = b->state;
+    if (b->kernel && isnan(state->own))
+        state->own = own_weight(b->kernel, b->param[ETA]);
+    return SPH_OK;
+}
+
+static const sph_life life = {SIZE(sph_life), 0u, create, destroy};
+
+#define SPH_POINT_LOOP update
+#define SPH_POINT_IN(P) P(scalar, m, M)
+#define SPH_POINT_INOUT(P) P(scalar, h, H) P(scalar, rho, RHO) P(scalar, slope, SLOPE)
+#define SPH_POINT_OUT(P) P(int32, busy, BUSY)
+#define SPH_POINT_PARAM(P) P(eta, ETA) P(tolerance, TOLERANCE)
+#define SPH_POINT_STATE(P) P(own, 0)
+#define SPH_POINT_BODY "update.body.h"
+#define SPH_POINT_DEVICE density_update
+#include <sph/point-loop.h>
 
 static const sph_item item = {
     .size = SIZE(sph_item),
@@ -91,6 +108,7 @@ const sph_function gsph_density = {
     .size = SIZE(sph_function),
     .shape = SPH_PAIR,
     .item = &item,
+    .life = &life,
     .run = sweep,
     .after = update,
     .reach = SPH_GATHER,
@@ -98,5 +116,7 @@ const sph_function gsph_density = {
     .unfinished = "h_busy",
     .reach_scale = 1.0,
     .device = &density_device,
+    .prepare = prepare,
     .reals = SPH_F64 | SPH_F32,
+    .device_after = &density_update,
 };

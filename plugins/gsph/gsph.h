@@ -10,10 +10,4 @@ extern const sph_function gsph_rates;     /* rates.c */
 
 #define SIZE(type) (uint32_t)sizeof(type)
 
-/* Component c of a column of doubles. */
-static inline double *gsph_plane(const sph_column *column, uint32_t c)
-{
-    return (double *)column->data + (size_t)c * column->plane;
-}
-
 #endif

@@ -56,29 +56,16 @@ static const sph_prop props[] = {
 #define SPH_LOOP_PRELUDE "rates.macros.h"
 #include <sph/pair-loop.h>
 
-/* v here is the predicted velocity v + dt a (or its half, at mid-step), made with the acceleration of the last
- * evaluation, which still stands in "a". With dt/2 (a_new - a_old) added it is the one that both
- * integrators end up with, and the work a.v then takes from u just what v gains: the total energy is
- * kept to second order or better. */
-static sph_status finish(const sph_batch *b)
-{
-    const double *h = b->h_dst.data;
-    const double *cs = gsph_plane(&b->dst[CS], 0), *power = gsph_plane(&b->dst[POWER], 0);
-    const double *fastest = gsph_plane(&b->dst[FASTEST], 0);
-    double *du = gsph_plane(&b->dst[DU], 0), *dt = gsph_plane(&b->dst[DT], 0);
-    for (uint64_t i = b->first; i < b->first + b->count; i++) {
-        double work = 0.0;
-        for (uint32_t c = 0; c < b->dim; c++) {
-            double *a = gsph_plane(&b->dst[A], c) + i;
-            double force = gsph_plane(&b->dst[FORCE], c)[i];
-            work += force * (gsph_plane(&b->dst[V], c)[i] + 0.5 * b->dt * (force - *a));
-            *a = force;
-        }
-        du[i] = power[i] - work;
-        dt[i] = h[i] / fmax(fastest[i], 2.0 * cs[i]);
-    }
-    return SPH_OK;
-}
+#define SPH_POINT_LOOP finish
+#define SPH_POINT_IN(P_)                                                                           \
+    P_(scalar, cs, CS)                                                                             \
+    P_(vector, v, V) P_(vector, force, FORCE) P_(scalar, power, POWER) P_(scalar, fastest, FASTEST)
+#define SPH_POINT_INOUT(P_) P_(vector, a, A)
+#define SPH_POINT_OUT(P_) P_(scalar, du, DU) P_(scalar, dt, DT)
+#define SPH_POINT_H
+#define SPH_POINT_BODY "finish.body.h"
+#define SPH_POINT_DEVICE rates_finish
+#include <sph/point-loop.h>
 
 static const sph_rate rates[] = {
     SPH_RATE("v", "a", SPH_KICK),
@@ -114,4 +101,5 @@ const sph_function gsph_rates = {
     .reals = SPH_F64 | SPH_F32,
     .rates = SPH_LIST(rates),
     .reductions = SPH_LIST(reductions),
+    .device_after = &rates_finish,
 };

@@ -4,7 +4,7 @@
 #include <math.h>
 
 enum { M, V, RHO, P_RHO2, CS, DRHO, A, DT };
-enum { ALPHA, BETA, GRAVITY };
+enum { ALPHA, BETA, GX, GY, GZ };
 
 static const sph_param params[] = {WCSPH_VISCOSITY, WCSPH_GRAVITY};
 
@@ -32,11 +32,15 @@ static const sph_prop props[] = {
 #define SPH_LOOP_DEVICE wcsph_rates_device
 #include <sph/pair-loop.h>
 
-static sph_status finish(const sph_batch *b)
-{
-    static const struct wcsph_finish at = {RHO, CS, DRHO, A, DT, ALPHA, BETA, GRAVITY};
-    return wcsph_finish(b, &at);
-}
+#define SPH_POINT_LOOP finish
+#define SPH_POINT_IN(P_) WCSPH_FINISH_IN(P_)
+#define SPH_POINT_INOUT(P_) P_(vector, a, A)
+#define SPH_POINT_OUT(P_) P_(scalar, dt, DT)
+#define SPH_POINT_PARAM(P_) WCSPH_FINISH_PARAM(P_)
+#define SPH_POINT_H
+#define SPH_POINT_BODY "finish.body.h"
+#define SPH_POINT_DEVICE rates_finish
+#include <sph/point-loop.h>
 
 static const sph_rate rates[] = {
     SPH_RATE("rho", "drho", SPH_KICK),
@@ -68,4 +72,5 @@ const sph_function wcsph_rates = {
     .reductions = SPH_LIST(reductions),
     .device = &wcsph_rates_device,
     .reals = SPH_F64 | SPH_F32,
+    .device_after = &rates_finish,
 };

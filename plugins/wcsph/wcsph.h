@@ -9,13 +9,9 @@ extern const sph_function wcsph_continuity; /* continuity.c */
 extern const sph_function wcsph_momentum;   /* momentum.c */
 extern const sph_function wcsph_rates;      /* rates.c: both in one sweep */
 
-/* momentum.c: gravity, and the time step that a particle allows. The declared columns that it is given
- * stand in this order in every function that ends with it. */
-struct wcsph_finish {
-    uint32_t rho, cs, drho, a, dt; /* columns */
-    uint32_t alpha, beta, gravity; /* parameters; of gravity the first of three */
-};
-sph_status wcsph_finish(const sph_batch *b, const struct wcsph_finish *at);
+/* What finish.body.h reads, by its function's own numbers of columns and parameters. */
+#define WCSPH_FINISH_IN(P_) P_(scalar, rho, RHO) P_(scalar, cs, CS) P_(scalar, drho, DRHO)
+#define WCSPH_FINISH_PARAM(P_) P_(alpha, ALPHA) P_(beta, BETA) P_(gx, GX) P_(gy, GY) P_(gz, GZ)
 
 #define WCSPH_VISCOSITY                                                                            \
     SPH_PARAM("alpha", "", "artificial viscosity, linear in the closing speed", 0.1, 0.0, 10.0),   \

@@ -45,14 +45,15 @@ typedef struct sph_device_body {
     sph_list param; /* parameters, as doubles; a choice is its index */
 } sph_device_body;
 
-/* What a destination does alone, for a device: a point function, `before` or `after` of a pair function, an
- * equation of state. point-loop.h makes one from the lists of its loop, so that both backends run the same
- * text. The body is of one particle: R and T are double (float on a device without doubles), branches are
- * allowed; it has the words of lanes.h, DIM, b->time, b->dt, b->step, K (the scene's kernel), h (of pair
- * functions), and the names in these lists: a scalar is a variable of that name, vectors and matrices are
- * arrays, an int32 is an int. */
+/* What a destination does alone, for a device: a point function, `before` or `after` of a pair function,
+ * an equation of state. point-loop.h makes one from the lists of its loop, so that both backends run
+ * the same text, and says what that may hold. R and T are double (float on a device without doubles).
+ * A scalar is a variable of its name, vectors, matrices and symmetric tensors are arrays of their
+ * components, an int32 is an int. A property stands in one of the lists at most, once; every name is
+ * there once. */
 typedef struct sph_device_point {
-    uint32_t size, reserved;
+    uint32_t size;
+    uint32_t h; /* 1: `h` is the smoothing length (pair functions); 0: a name like any other */
     const char *text, *file;            /* as of sph_device_body */
     const char *prelude, *prelude_file; /* likewise */
     sph_list in;  /* of sph_device_value, like the rest: declared properties that it reads alone */
@@ -62,8 +63,7 @@ typedef struct sph_device_point {
     /* Numbers of the use's state: the index-th double of those at its beginning. `prepare` and `create`
      * may set them; the host hands them on before each pass. type: 0. */
     sph_list state;
-    sph_list
-        fail; /* of const char *: what sph_fail(k) says, with SPH_E_NUMERIC, of which the run ends */
+    sph_list fail; /* of const char *: what sph_fail(k) says, with SPH_E_NUMERIC; the run ends */
 } sph_device_point;
 
 SPH_END_DECLS

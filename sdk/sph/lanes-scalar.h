@@ -1,6 +1,9 @@
 /* sph/lanes-scalar.h -- the words of lanes.h for one number at a time, with libm's functions: what the
- * reference loop (pair-reference.h) is made of. Included with SPH_ISA (one_f64 or one_f80) and
- * SPH_REAL (double or long double) defined. Truth is bit 0 of a mask, as on a device. */
+ * reference loop (pair-reference.h) and the loops over points (point-loop.h) are made of. Included with
+ * SPH_ISA (one_f64 or one_f80) and SPH_REAL (double or long double) defined. Truth is bit 0 of a mask, as
+ * on a device. */
+
+#include <sph/lanes-names.h>
 
 #define R SPH_OF_ISA(sph_lanes)
 #define B SPH_OF_ISA(sph_mask)

@@ -1,23 +1,8 @@
 /* sph/pair-device.h -- the loop's body as data, for devices; the inside of pair-loop.h, where
  * SPH_LOOP_DEVICE is defined. */
 
-#if !defined(__ELF__)
-#error "SPH_LOOP_DEVICE embeds a file by the assembler's .incbin, written here for ELF"
-#endif
+#include <sph/device-text.h>
 
-/* The text of a file as a string. The symbol is hidden, and global all the same: link time
- * optimisation puts the assembler's text and the code that reads it into different objects. */
-#define SPH_DEVICE_WORDS(a) #a
-#define SPH_DEVICE_SYMBOL(a) SPH_DEVICE_WORDS(a)
-#define SPH_DEVICE_INCBIN(file) ".incbin \"" file "\"\n"
-#define SPH_DEVICE_EMBED(symbol, name, texts)                                                      \
-    __asm__(".pushsection .rodata\n"                                                               \
-            ".globl " name "\n"                                                                    \
-            ".hidden " name "\n"                                                                   \
-            ".type " name ", %object\n" name ":\n" texts ".byte 0\n"                               \
-            ".size " name ", . - " name "\n"                                                       \
-            ".popsection\n");                                                                      \
-    extern __attribute__((visibility("hidden"))) const char symbol[]
 #define SPH_DEVICE_TEXT SPH_CAT(sph_text, SPH_LOOP_DEVICE)
 #define SPH_DEVICE_MACROS SPH_CAT(sph_macros, SPH_LOOP_DEVICE)
 /* Several bodies: each in a scope of its own. */
@@ -89,10 +74,6 @@ static const sph_device_body SPH_LOOP_DEVICE = {
     SPH_DEVICE_LIST(parameters),
 };
 
-#undef SPH_DEVICE_WORDS
-#undef SPH_DEVICE_SYMBOL
-#undef SPH_DEVICE_EMBED
-#undef SPH_DEVICE_INCBIN
 #undef SPH_DEVICE_NEXT
 #undef SPH_DEVICE_BODIES
 #undef SPH_DEVICE_TEXT

@@ -7,7 +7,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "../unit/on_device.h"
+#include "../unit/device_clouds.h"
 
 #include <omp.h>
 #include <stdio.h>

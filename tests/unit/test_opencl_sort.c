@@ -6,7 +6,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include "on_device.h"
+#include "device_clouds.h"
 #include "opencl/sort.h"
 
 static struct device *device;

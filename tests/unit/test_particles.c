@@ -197,10 +197,13 @@ static void trades(void **state)
     particles_resize(&p, 7, 0, &e);
     particles_real(&p, "a", 0)[6] = 1;
     particles_real(&p, "b", 0)[6] = 2;
+    assert_int_equal(particles_mirror(&p, 0, &e), 0);
     particles_swap(&p, 0, 1);
     assert_true(particles_real(&p, "a", 0)[6] == 2);
     assert_true(particles_real(&p, "b", 0)[6] == 1);
     assert_string_equal(p.column[0].name, "a");
+    /* Whoever reads a column in floats goes on to do so. */
+    assert_true(p.column[0].mirror != NULL && p.column[1].mirror == NULL);
     assert_true(particles_is_valid(&p));
     particles_fini(&p);
 }

@@ -1,0 +1,60 @@
+/* run/device.h -- a run on an OpenCL device: particles, ghosts, lists and passes live there, and what passes.c,
+ * advance.c and lists.c do on the processor is done there. The host's columns are copies that are brought up to
+ * date when somebody looks at them (run_look). All of run.h's rules hold; only r->device is known elsewhere. */
+#ifndef RUN_DEVICE_H
+#define RUN_DEVICE_H
+
+#include "opencl/kernels.h"
+#include "opencl/look.h"
+#include "opencl/ops.h"
+#include "run/run.h"
+
+struct run_device {
+    struct device *d;
+    struct ops *ops;
+    struct look *look;
+    struct device_search *search;
+    struct kernels *kernels;
+    struct stage *stage; /* of all moments, one behind the other */
+    size_t first[MOMENT_COUNT + 1];
+    struct arena *arena;       /* [array] */
+    struct ops_ghosts *ghosts; /* [array] */
+    struct ops_skin *skin;     /* [frame * n_array + array] */
+    struct device_list *list;  /* [plan->n_list] */
+    double *share;             /* [plan->n_list]: true pairs per entry, when last counted */
+    uint32_t *slot; /* [reduction]: where its result will be; NO_SLOT: nothing is on its way */
+    uint32_t n_slot;
+};
+#define NO_SLOT UINT32_MAX
+
+int run_device_open(struct run *r, struct error *e);
+void run_device_close(struct run *r);
+
+/* run_passes, advance (run.h, advance.c). */
+int run_device_passes(struct run *r, enum moment moment, struct error *e);
+int run_device_advance(struct run *r, size_t from, size_t to, struct error *e);
+/* run_lists, run_frame, run_refresh; device_lists.c. */
+int run_device_lists(struct run *r, bool within, struct error *e);
+int run_device_frame(struct run *r, size_t frame, struct error *e);
+int run_device_refresh(struct run *r, size_t array, int column, struct error *e);
+
+/* run_totals. */
+int run_device_totals(struct run *r, struct totals *t, struct error *e);
+/* device_store.c: lists and ghosts into a checkpoint or out of it; of reading, after the host's particles. */
+int run_device_store(struct run *r, struct store *s, struct error *e);
+/* One column on the host is right; all are. */
+int run_device_get(struct run *r, size_t array, int column, struct error *e);
+int run_device_fetch(struct run *r, struct error *e);
+/* The host's columns were written, or particles came and went: all goes to the device again. */
+int run_device_put(struct run *r, struct error *e);
+/* A column was written on the device: what copies it is old. */
+static inline void run_device_changed(struct run *r, size_t array, int column)
+{
+    arena_written_here(&r->device->arena[array], column);
+    r->stale[array][column] = r->device->ghosts[array].n > 0;
+    r->mirror_old[array][column] = MIRROR_OLD;
+}
+/* What reductions that are on their way came to, and what kernels have found wrong. Waits for the device. */
+int run_device_collect(struct run *r, struct error *e);
+
+#endif

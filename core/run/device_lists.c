@@ -1,0 +1,429 @@
+/* run/device_lists.c -- neighbour lists and ghosts of a run on a device: lists.c over again, with the particles
+ * there. When something is wrong with places or smoothing lengths the host looks for it in its copies, and
+ * says it in the words that it has for its own runs. */
+#include "run/device.h"
+
+#include "run/watch.h"
+
+#include <math.h>
+#include <omp.h>
+#include <string.h>
+
+/* As on the host: lists are made so often between two sorts. */
+#define BUILDS_PER_SORT 16
+
+static double support(const struct run *r)
+{
+    return r->plan->kernel.support * r->plan->reach_scale;
+}
+
+static int place_in(const struct run *r, size_t frame, size_t array)
+{
+    const struct plan_array *a = &r->plan->array[array];
+    const struct frame *f = &r->plan->frame[frame];
+
+    return frame == 0 ? a->position : particles_find(&a->p, f->frozen ? f->kept : f->name);
+}
+
+static int reach_in(const struct run *r, size_t frame, size_t array)
+{
+    const struct plan_array *a = &r->plan->array[array];
+    const struct frame *f = &r->plan->frame[frame];
+
+    return f->frozen ? particles_find(&a->p, f->kept_h) : a->smoothing;
+}
+
+static bool in_frame(const struct run *r, size_t frame, size_t array)
+{
+    for (size_t k = 0; k < r->plan->n_list; k++) {
+        const struct plan_list *l = &r->plan->list[k];
+        if (l->frame == frame && (l->dst == array || l->src == array))
+            return true;
+    }
+    return false;
+}
+
+static struct device_cloud cloud_of(const struct run *r, size_t array, size_t frame, bool ghosts)
+{
+    const struct arena *a = &r->device->arena[array];
+
+    return (struct device_cloud){.dim = r->plan->dim,
+                                 .wide = &a->wide,
+                                 .plane = a->plane,
+                                 .n = a->n + (ghosts ? a->n_ghost : 0),
+                                 .x_slot = a->place[place_in(r, frame, array)].slot,
+                                 .h_slot = a->place[reach_in(r, frame, array)].slot,
+                                 .scale = support(r)};
+}
+
+/* Places and h of all arrays are on the device. */
+static int places_here(struct run *r, size_t frame, struct error *e)
+{
+    for (size_t a = 0; a < r->plan->n_array; a++)
+        if (arena_put(&r->device->arena[a], place_in(r, frame, a), e) ||
+            arena_put(&r->device->arena[a], reach_in(r, frame, a), e))
+            return -1;
+    return 0;
+}
+
+/* Places and h of all arrays are on the host. */
+static int places_there(struct run *r, struct error *e)
+{
+    for (size_t a = 0; a < r->plan->n_array; a++) {
+        const struct plan_array *pa = &r->plan->array[a];
+        if (run_device_get(r, a, pa->position, e) || run_device_get(r, a, pa->smoothing, e) ||
+            run_device_get(r, a, pa->id, e))
+            return -1;
+    }
+    return 0;
+}
+
+/* The host makes its own lists of what is there, to say what is wrong; where nothing is after all, `why` stays
+ * what the device had against it. */
+static int host_says(struct run *r, struct error *e)
+{
+    struct run_device *device = r->device;
+    struct error why = {0};
+    int status = run_device_fetch(r, &why);
+
+    if (status)
+        return -1;
+    r->device = NULL;
+    r->lists_made = false;
+    status = run_lists(r, true, &why);
+    r->device = device;
+    for (size_t a = 0; a < r->plan->n_array; a++)
+        if (particles_resize(&r->plan->array[a].p, r->plan->array[a].p.n, 0, &why))
+            status = -1;
+    if (status)
+        *e = why;
+    return -1;
+}
+
+/* -- Where everything is -------- */
+
+struct extent {
+    double low[3], high[3];
+};
+
+static int extent_of(struct run *r, size_t array, struct extent *x, struct error *e)
+{
+    const struct plan_array *a = &r->plan->array[array];
+
+    for (int c = 0; c < r->plan->dim; c++)
+        if (ops_range(r->device->ops, &r->device->arena[array], a->position, (uint32_t)c,
+                      &x->low[c], &x->high[c], e))
+            return -1;
+    return 0;
+}
+
+/* Has anybody gone where nobody should be? Those that are looked at particle by particle are the host's. */
+static int look_for_escaped(struct run *r, struct error *e)
+{
+    const struct scene_watch *rule = &r->watch->scene[WATCH_ESCAPED];
+    bool wrong = rule->where || rule->action == WATCH_COUNT || !r->watch->bounded;
+
+    for (size_t a = 0; !wrong && a < r->plan->n_array; a++) {
+        struct extent x;
+        if (r->device->arena[a].n == 0)
+            continue;
+        if (extent_of(r, a, &x, e))
+            return -1;
+        for (int c = 0; c < r->plan->dim; c++)
+            wrong = wrong || !(x.low[c] >= r->watch->low[c] && x.high[c] <= r->watch->high[c]);
+    }
+    if (!wrong)
+        return 0;
+    return places_there(r, e) || watch_places(r, true, e) || watch_places(r, false, e) ? -1 : 0;
+}
+
+/* -- Are the lists still right? -------- */
+
+static int holds(struct run *r, size_t frame, bool *answer, struct error *e)
+{
+    struct skin_change all = {0.0, INFINITY};
+
+    for (size_t a = 0; a < r->plan->n_array; a++) {
+        struct skin_change here;
+        if (!in_frame(r, frame, a) || r->device->arena[a].n == 0)
+            continue;
+        if (ops_skin_change(r->device->ops, &r->device->skin[frame * r->plan->n_array + a],
+                            &r->device->arena[a], place_in(r, frame, a), reach_in(r, frame, a),
+                            support(r), r->skin, &here.moved, &here.room, e))
+            return -1;
+        all = skin_both(all, here);
+    }
+    *answer = skin_holds(all);
+    return 0;
+}
+
+static int keep_places(struct run *r, size_t frame, struct error *e)
+{
+    for (size_t a = 0; !r->plan->frame[frame].frozen && a < r->plan->n_array; a++)
+        if (in_frame(r, frame, a) &&
+            ops_skin_keep(r->device->ops, &r->device->skin[frame * r->plan->n_array + a],
+                          &r->device->arena[a], place_in(r, frame, a), reach_in(r, frame, a), e))
+            return -1;
+    return 0;
+}
+
+/* -- Order, ghosts -------- */
+
+static int wrap(struct run *r, struct error *e)
+{
+    for (size_t a = 0; a < r->plan->n_array; a++) {
+        struct arena *arena = &r->device->arena[a];
+        if (arena->n == 0)
+            continue;
+        for (size_t c = 0; c < arena->p->n_column; c++)
+            if (arena->p->column[c].state && arena_put(arena, (int)c, e))
+                return -1;
+        if (ops_wrap(r->device->ops, arena, &r->plan->scene->box, NULL, e))
+            return -1;
+        for (size_t c = 0; c < arena->p->n_column; c++)
+            if (arena->p->column[c].state)
+                run_device_changed(r, a, (int)c);
+    }
+    return 0;
+}
+
+static int sort(struct run *r, struct error *e)
+{
+    int status = 0;
+
+    for (size_t a = 0; !status && a < r->plan->n_array; a++) {
+        struct arena *arena = &r->device->arena[a];
+        const struct device_cloud cloud = cloud_of(r, a, 0, false);
+        struct device_buffer order = {0};
+        if (arena->n < 2)
+            continue;
+        for (size_t c = 0; !status && c < arena->p->n_column; c++)
+            if (arena->p->column[c].state)
+                status = arena_put(arena, (int)c, e);
+        if (!status)
+            status = device_order(r->device->search, &cloud,
+                                  arena->place[r->plan->array[a].id].slot, &order, e) ||
+                             ops_permute(r->device->ops, arena, &order, e)
+                         ? -1
+                         : 0;
+        device_release(r->device->d, &order);
+        r->device->ghosts[a].n = 0;
+        for (size_t c = 0; c < arena->p->n_column; c++) {
+            r->stale[a][c] = false;
+            r->mirror_old[a][c] = MIRROR_OLD;
+        }
+    }
+    r->builds_since_sort = 0;
+    r->cost.sorts++;
+    r->watch->sorted = true;
+    return status;
+}
+
+/* The ranges of places and of h, which ghosts and the frame of mirrors are made for. */
+static int find_ranges(struct run *r, struct extent *all, double *overshoot, struct error *e)
+{
+    const struct box *box = &r->plan->scene->box;
+
+    *all = (struct extent){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    *overshoot = 0.0;
+    for (size_t a = 0; a < r->plan->n_array; a++) {
+        struct extent x;
+        r->h_low[a] = INFINITY;
+        r->h_high[a] = 0.0;
+        if (r->device->arena[a].n == 0)
+            continue;
+        if (extent_of(r, a, &x, e) ||
+            ops_range(r->device->ops, &r->device->arena[a], r->plan->array[a].smoothing, 0,
+                      &r->h_low[a], &r->h_high[a], e))
+            return -1;
+        r->h_high[a] = fmax(r->h_high[a], 0.0);
+        for (int c = 0; c < r->plan->dim; c++) {
+            all->low[c] = fmin(all->low[c], x.low[c]);
+            all->high[c] = fmax(all->high[c], x.high[c]);
+            if (box->bounded && box->side[c][0] != SIDE_OPEN)
+                *overshoot = fmax(*overshoot, box->min[c] - x.low[c]);
+            if (box->bounded && box->side[c][1] != SIDE_OPEN)
+                *overshoot = fmax(*overshoot, x.high[c] - box->max[c]);
+        }
+    }
+    return 0;
+}
+
+/* Whether so many ghosts would be made that somebody may have too many neighbours. */
+static bool is_wide(const struct run *r, double margin)
+{
+    const struct box *box = &r->plan->scene->box;
+    bool wide = false;
+
+    for (int c = 0; c < r->plan->dim; c++)
+        wide = wide || (box->bounded && box->side[c][0] != SIDE_OPEN &&
+                        box->side[c][1] != SIDE_OPEN && 2.0 * margin > box->max[c] - box->min[c]);
+    return wide;
+}
+
+static int make_ghosts(struct run *r, struct error *e)
+{
+    struct extent all;
+    double overshoot, margin = 0.0;
+
+    if (find_ranges(r, &all, &overshoot, e))
+        return -1;
+    for (size_t a = 0; a < r->plan->n_array; a++)
+        margin = fmax(margin, r->h_high[a]);
+    margin = margin * support(r) * (1.0 + r->skin) + overshoot;
+    if (is_wide(r, margin) && (places_there(r, e) || watch_reach(r, margin, e)))
+        return -1;
+    for (size_t a = 0; a < r->plan->n_array; a++) {
+        const struct plan_array *pa = &r->plan->array[a];
+        struct run_device *d = r->device;
+        if (ops_ghosts_make(d->ops, &d->arena[a], &d->ghosts[a], &r->plan->scene->box, margin, e)) {
+            struct error why = {0};
+            if (places_there(r, &why) == 0)
+                watch_no_ghosts(r, e);
+            return -1;
+        }
+        for (size_t c = 0; c < pa->p.n_column; c++) {
+            r->stale[a][c] = d->ghosts[a].n > 0;
+            r->mirror_old[a][c] = MIRROR_OLD;
+        }
+        r->stale[a][pa->position] = r->stale[a][pa->smoothing] = false;
+    }
+    if (r->device->ghosts) /* they stand beyond the real ones, no further than the margin */
+        for (int c = 0; c < r->plan->dim; c++) {
+            bool any = false;
+            for (size_t a = 0; a < r->plan->n_array; a++)
+                any = any || r->device->ghosts[a].n > 0;
+            all.low[c] -= any ? margin : 0.0;
+            all.high[c] += any ? margin : 0.0;
+        }
+    return run_mirror_frame_of(r, all.low, all.high, e);
+}
+
+/* -- Lists -------- */
+
+static int make_list(struct run *r, size_t k, bool counted, struct error *e)
+{
+    const struct plan_list *l = &r->plan->list[k];
+    const struct device_cloud dst = cloud_of(r, l->dst, l->frame, false);
+    const struct device_cloud src = cloud_of(r, l->src, l->frame, true);
+    const struct scene_watch *rule = &r->watch->scene[WATCH_NEIGHBOURS];
+    struct device_list *list = &r->device->list[k];
+    const uint64_t most = rule->action == WATCH_OFF ? 0 : (uint64_t)rule->limit;
+
+    if (device_list_make(r->device->search, list, &dst, &src, l->reach == SPH_SYMMETRIC, r->skin,
+                         counted, most, e)) {
+        error_prefix(e, "neighbours of \"%s\"", r->plan->array[l->dst].p.name);
+        return host_says(r, e);
+    }
+    if (list->crowded) {
+        error_set(e, EXIT_RUN, "%llu particles of \"%s\" have more than %llu neighbours",
+                  (unsigned long long)list->crowded, r->plan->array[l->dst].p.name,
+                  (unsigned long long)most);
+        if (rule->action == WATCH_STOP)
+            return host_says(r, e);
+        /* Counted: who they are is nobody's question. */
+        watch_counted(r,
+                      &(struct sign){.cause = WATCH_NEIGHBOURS, .array = &r->plan->array[l->dst]},
+                      list->crowded);
+    }
+    if (counted && list->n_entry)
+        r->device->share[k] = (double)list->n_pair / (double)list->n_entry;
+    return 0;
+}
+
+static int make_frame(struct run *r, size_t frame, bool counted, struct error *e)
+{
+    for (size_t k = 0; k < r->plan->n_list; k++)
+        if (r->plan->list[k].frame == frame && make_list(r, k, counted, e))
+            return -1;
+    return keep_places(r, frame, e);
+}
+
+static int freeze(struct run *r, size_t frame, struct error *e)
+{
+    for (size_t a = 0; a < r->plan->n_array; a++) {
+        struct arena *arena = &r->device->arena[a];
+        const struct particles *p = &r->plan->array[a].p;
+        const int from[2] = {particles_find(p, r->plan->frame[frame].name),
+                             r->plan->array[a].smoothing};
+        const int to[2] = {place_in(r, frame, a), reach_in(r, frame, a)};
+        if (!in_frame(r, frame, a))
+            continue;
+        for (int k = 0; k < 2; k++) {
+            const size_t plane = arena->plane * sizeof(double);
+            if (arena_put(arena, from[k], e) ||
+                device_copy(r->device->d, &arena->wide, arena->place[to[k]].slot * plane,
+                            &arena->wide, arena->place[from[k]].slot * plane,
+                            p->column[from[k]].ncomp * plane, e))
+                return -1;
+            run_device_changed(r, a, to[k]);
+        }
+    }
+    r->frozen[frame] = true;
+    return 0;
+}
+
+int run_device_frame(struct run *r, size_t frame, struct error *e)
+{
+    const bool frozen = r->plan->frame[frame].frozen;
+    const double begin = omp_get_wtime();
+    bool right = false;
+    int status;
+
+    if (frame == 0)
+        return 0;
+    if (places_here(r, frame, e))
+        return -1;
+    if (r->frame_made[frame] && !frozen && holds(r, frame, &right, e))
+        return -1;
+    if (r->frame_made[frame] && (frozen || right))
+        return 0;
+    if (frozen && !r->frozen[frame] && freeze(r, frame, e))
+        return -1;
+    status = make_frame(r, frame, true, e);
+    r->frame_made[frame] = !status;
+    r->cost.list_builds++;
+    r->cost.neighbour += omp_get_wtime() - begin;
+    return status;
+}
+
+static int build(struct run *r, bool within, struct error *e)
+{
+    const bool sorts = !within && (!r->lists_made || ++r->builds_since_sort >= BUILDS_PER_SORT);
+
+    if (look_for_escaped(r, e) || (!within && wrap(r, e)) || (sorts && sort(r, e)) ||
+        make_ghosts(r, e))
+        return -1;
+    if (sorts || !r->lists_made)
+        memset(r->frame_made, false, r->plan->n_frame);
+    return make_frame(r, 0, sorts || !r->lists_made, e);
+}
+
+int run_device_lists(struct run *r, bool within, struct error *e)
+{
+    const double begin = omp_get_wtime();
+    bool right = false;
+    int status = places_here(r, 0, e);
+
+    if (!status && r->plan->n_list == 0)
+        return within ? 0 : wrap(r, e);
+    if (!status && r->lists_made)
+        status = holds(r, 0, &right, e);
+    if (!status && !right) {
+        status = build(r, within, e);
+        r->lists_made = !status;
+        r->cost.list_builds++;
+    }
+    r->lists_suspect = false;
+    r->cost.neighbour += omp_get_wtime() - begin;
+    return status;
+}
+
+int run_device_refresh(struct run *r, size_t array, int column, struct error *e)
+{
+    if (!r->stale[array][column])
+        return 0;
+    r->stale[array][column] = false;
+    return ops_ghosts_refresh(r->device->ops, &r->device->arena[array], &r->device->ghosts[array],
+                              &r->plan->scene->box, column, e);
+}

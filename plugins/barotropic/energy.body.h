@@ -1,0 +1,1 @@
+/* energy.body.h -- nothing is left to do: the reduction is all. */

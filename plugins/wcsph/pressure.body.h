@@ -1,0 +1,2 @@
+/* pressure.body.h -- p / rho^2. */
+p_rho2 = p / (rho * rho);

@@ -1,0 +1,202 @@
+"""Whole runs on an OpenCL device against the same runs on the processor: what one evaluation gives, to rounding;
+whole Sod and Noh, to their errors; several arrays, sides, smoothing lengths; the particles' order; a run that goes
+on; and what is said when it cannot be. Norm: root of the sum of squares over all particles and components of a
+column, of the difference over the processor's."""
+import sys
+
+import numpy
+
+from scenes import Scenes, changed, example
+
+scenes = Scenes()
+expect = scenes.expect
+ONLY = sys.argv[1:]  # precisions
+ON = ("--device", "opencl", "--device-only")
+
+done = scenes.command("info", "--devices")
+if done.returncode or "No OpenCL device" in done.stdout:
+    print("no OpenCL device here")
+    sys.exit(77)
+
+
+def norm_of_difference(a, b):
+    scale = float(numpy.sqrt((b.astype(float) ** 2).sum()))
+    off = float(numpy.sqrt(((a.astype(float) - b) ** 2).sum()))
+    return off / scale if scale > 0 else off
+
+
+# What a stiff equation of state makes of a density that hardly changes is worse conditioned than forces are: by
+# rho c0^2 / p, some 1e4 in the drop.
+STIFF = {"p": 10, "p_rho2": 10}
+
+
+def compare(what, here, there, bar, columns=None):
+    """Every real column of two snapshots in the norm; returns the largest difference."""
+    worst, of = 0.0, ""
+    for name, b in there.column.items():
+        if name in ("array", "id") or (columns and name not in columns):
+            continue
+        a = here[name]
+        expect(f"{what}: NaN in {name}", (numpy.isnan(a) == numpy.isnan(b)).all())
+        good = ~numpy.isnan(b)
+        found = norm_of_difference(a[good], b[good]) if good.any() else 0.0
+        if found > worst:
+            worst, of = found, name
+        most = bar * STIFF.get(name, 1)
+        expect(f"{what}: {name}", found <= most, f"{found:.2e} in the norm, bar {most:.0e}")
+    print(f"{what}: {worst:.1e} in the norm ({of}; bar {bar:.0e})")
+    return worst
+
+
+def quiet(scene):
+    """Without what takes time and is not looked at here."""
+    scene = changed(scene)
+    for key in ("compare", "probes", "profiles"):
+        scene.pop(key, None)
+    scene["output"] = {"picture": False}
+    return scene
+
+
+# -- Scenes ----------------------------------------------------------------------------------------------
+
+
+def box(dim, side, scheme, sides, jitter=0.2, **scheme_more):
+    """A box of barotropic gas or of water with a flow in it; sides: one word for all, or by axis."""
+    if isinstance(sides, str):
+        sides = {axis: sides for axis in "xyz"[:dim]}
+    waves = {
+        1: ["0.1 * sin(2*pi*x)"],
+        2: ["0.1 * sin(2*pi*x)*cos(2*pi*y)", "-0.1 * cos(2*pi*x)*sin(2*pi*y)"],
+        3: ["0.1 * sin(2*pi*x)*cos(2*pi*y)", "-0.1 * cos(2*pi*x)*sin(2*pi*y)", "0.05 * sin(2*pi*z)"],
+    }
+    return {
+        "title": f"{scheme}, {dim}D, {sides}",
+        "dimensions": dim,
+        "plugins": ["kernels", "eos", scheme.split("-")[0], "forces", "diagnostics"],
+        "domain": {"min": [0] * dim, "max": [1] * dim, "sides": sides},
+        "materials": {"m": {"eos": {"name": "linear", "c0": 1, "rho0": 1, "p0": 1}}},
+        "particles": {
+            "fluid": {
+                "material": "m",
+                "fill": {"lattice": "square", "spacing": 1 / side, "jitter": jitter},
+                "fields": {"rho": 1, "v": waves[dim]},
+                "h_over_dx": 1.3,
+            }
+        },
+        "scheme": {"name": scheme, **scheme_more},
+        "time": {"end": 1},
+        "output": {"picture": False},
+    }
+
+
+def two_arrays(scheme):
+    """Left and right halves as arrays of their own, with another spacing each."""
+    scene = box(2, 24, scheme, {"x": "periodic", "y": "mirror"})
+    left = scene["particles"].pop("fluid")
+    right = changed(left)
+    left["fill"]["in"] = {"box": {"min": [0, 0], "max": [0.5, 1]}}
+    right["fill"]["in"] = {"box": {"min": [0.5, 0], "max": [1, 1]}}
+    right["fill"]["spacing"] = 1 / 36
+    scene["particles"] = {"left": left, "right": right}
+    return scene
+
+
+# At rest and even, a wave's forces are 0 but for rounding: jitter gives it some.
+sod, noh, drop, wave, orbit = (quiet(example(f"{name}.json")) for name in ("sod", "noh", "drop", "wave", "orbit"))
+noh["particles"]["fluid"]["fill"]["spacing"] = 0.05
+drop["particles"]["drop"]["fill"]["spacing"] = 0.08
+wave["particles"]["gas"]["fill"]["jitter"] = 0.2
+noh3 = quiet(example("noh-3d.json"))
+noh3["particles"]["fluid"]["fill"] = {"lattice": "square", "spacing": 0.16}
+
+CASES = {
+    "sod": sod,
+    "noh": noh,
+    "noh 3D": noh3,
+    "drop": drop,
+    "wave": wave,
+    "orbit": orbit,
+    "periodic 3D": box(3, 12, "wcsph", "periodic"),
+    "mirror 3D": box(3, 12, "barotropic", "mirror"),
+    "periodic and mirror 2D": box(2, 30, "barotropic-continuity", {"x": "periodic", "y": "mirror"}),
+    "two arrays": two_arrays("wcsph"),
+    "two arrays, summed": two_arrays("barotropic"),
+    "exact Riemann solver": changed(sod, scheme={"name": "gsph", "riemann": "exact"}),
+    "nearest, body-force": changed(
+        box(2, 20, "wcsph", "periodic"),
+        scheme={"name": "wcsph", "edit": [{"insert": "body-force", "gy": -1}, {"insert": "nearest"}]},
+    ),
+}
+KERNELS = ("cubic-spline", "quartic-spline", "quintic-spline", "wendland-c2", "wendland-c4", "wendland-c6", "gaussian")
+for kernel in KERNELS:
+    dim = 1 if kernel == "gaussian" else 2
+    CASES[f"kernel {kernel}"] = changed(box(2, 16, "wcsph", "periodic"), kernel=kernel)
+for manager in ("boxes", "cells", "radix", "octree"):
+    CASES[f"manager {manager}"] = changed(noh, neighbours={"manager": manager})
+
+# -- One step: what the evaluations give -------------------------------------------------------------------
+
+# After one step rates have been evaluated twice, of states that differ by rounding alone.
+BARS = {"double": 1e-12, "mixed": 1e-5, "single": 2e-5}
+for name, scene in CASES.items():
+    for precision, bar in BARS.items():
+        if ONLY and precision not in ONLY:
+            continue
+        if precision != "double" and name.startswith(("kernel", "manager")):
+            continue
+        options = ("--precision", precision, "--steps", "1")
+        here, there = scenes.good(scene, *options, *ON), scenes.good(scene, *options)
+        compare(f"{name}, {precision}, a step", here.last(), there.last(), bar)
+
+# -- Many steps: lists, sorts, ghosts made anew -------------------------------------------------------------
+
+for name in ("noh", "noh 3D", "drop", "periodic 3D", "mirror 3D", "two arrays"):
+    options = ("--precision", "double", "--steps", "60")
+    here, there = scenes.good(CASES[name], *options, *ON), scenes.good(CASES[name], *options)
+    compare(f"{name}, 60 steps", here.last(), there.last(), 1e-8, columns=("x", "v", "rho", "h", "u"))
+    a, b = here.summary()["cost"], there.summary()["cost"]
+    expect(f"{name}: list builds", abs(a["list_builds"] - b["list_builds"]) <= 2, (a["list_builds"], b["list_builds"]))
+    expect(f"{name}: pairs", abs(a["pairs"] / b["pairs"] - 1) < 0.02, (a["pairs"], b["pairs"]))
+
+# -- All integrators ----------------------------------------------------------------------------------------
+
+for integrator in ("euler", "kdk", "dkd", "symplectic", "verlet2", "pec", "pece", "rk2", "ssp-rk3", "rk4"):
+    scene = changed(CASES["periodic and mirror 2D"], time={"end": 1, "integrator": integrator})
+    options = ("--precision", "double", "--steps", "5")
+    here, there = scenes.good(scene, *options, *ON), scenes.good(scene, *options)
+    compare(f"{integrator}, 5 steps", here.last(), there.last(), 1e-10)
+
+# -- Whole runs: errors against the exact solutions ------------------------------------------------------------
+
+whole = {"sod": example("sod.json"), "noh": example("noh.json")}
+whole["noh"]["particles"]["fluid"]["fill"]["spacing"] = 0.04
+for name, scene in whole.items():
+    for precision in ("double", "mixed"):
+        here = scenes.good(scene, "--precision", precision, *ON).summary()
+        there = scenes.good(scene, "--precision", precision).summary()
+        for what, norm in there["errors"].items():
+            for kind in ("l1", "l2"):
+                ratio = here["errors"][what][kind] / norm[kind]
+                print(f"{name}, {precision}: {kind} of {what} {here['errors'][what][kind]:.6g}, {ratio:.6f} times the processor's")
+                expect(f"{name}, {precision}: {kind} of {what}", abs(ratio - 1) < 0.01, ratio)
+
+# -- A run that goes on -----------------------------------------------------------------------------------------
+
+scene = changed(CASES["two arrays"], output={"picture": False, "checkpoint": {"steps": 20, "keep": 9}})
+straight = scenes.good(scene, "--steps", "40", *ON)
+first = scenes.good(scene, "--steps", "20", *ON)
+again = scenes.command("--resume", first.path("checkpoint_00000020.h5"), "--steps", "40", "--quiet", *ON)
+expect("resume", again.returncode == 0, again.stderr)
+same = all((first.last()[name] == data).all() or numpy.isnan(data).any() for name, data in straight.last().column.items())
+expect("a resumed run is the same to the last bit", same)
+refused = scenes.command("--resume", first.path("checkpoint_00000020.h5"), "--steps", "60", "--quiet")
+expect("resumed elsewhere", refused.returncode == 2 and "--device opencl" in refused.stderr, refused.stderr)
+
+# -- What cannot be -----------------------------------------------------------------------------------------------
+
+refused = scenes.run(sod, "--device", "opencl:99")
+expect("no such device", refused.code != 0 and "99" in refused.stderr, refused.stderr)
+refused = scenes.run(sod, "--device", "cuda")
+expect("no such word", refused.code == 2 and '"cuda" is neither' in refused.stderr, refused.stderr)
+
+scenes.end()

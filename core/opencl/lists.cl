@@ -1,9 +1,9 @@
-/* opencl/lists.cl -- the sources of groups of eight destinations, group by group: counted, then written where the
- * running sums of the counts say; and what is true of them. In doubles and exact, whatever the group looks like:
- * on a processor bundles.cl does most groups faster.
+/* opencl/lists.cl -- the sources of groups of eight destinations, group by group: counted, then
+ * written where the running sums of the counts say; and what is true of them. In doubles and exact,
+ * whatever the group looks like: on a processor bundles.cl does most groups faster.
  *
- * counts: planes of `stride` uints, of the groups from `from` on: all sources of a group, those of both halves,
- * of the lower, of the upper one; 1 if it is done here. */
+ * counts: planes of `stride` uints, of the groups from `from` on: all sources of a group, those
+ * of both halves, of the lower, of the upper one; 1 if it is done here. */
 
 #define MANY (CPU ? 32u : 1u) /* groups that a work item takes */
 
@@ -18,8 +18,8 @@ struct found {
     uint n[4]; /* as counts; that of ALL is not looked at */
 };
 
-/* Where the k-th of a side goes, from the group's beginning: those of both halves first, what is left over of
- * the longer side next, then lower and upper in turns. */
+/* Where the k-th of a side goes, from the group's beginning: those of both halves first, what is
+ * left over of the longer side next, then lower and upper in turns. */
 INLINE uint place_of(const struct found *f, uint side, uint k)
 {
     const uint turns = min(f->n[LOWER], f->n[UPPER]);
@@ -31,7 +31,8 @@ INLINE uint place_of(const struct found *f, uint side, uint k)
     return k < turns ? common + 2 * k + (side == UPPER) : f->n[BOTH] + k - turns;
 }
 
-/* Bits of the sources [first, last), at most eight: seen by the lower half of the lanes, by the upper half. */
+/* Bits of the sources [first, last), at most eight: seen by the lower half of the lanes, by the
+ * upper half. */
 INLINE uint2 sees(const struct asked *q, __global const double *wide, struct points src, uint first,
                   uint last)
 {
@@ -150,8 +151,9 @@ INLINE struct found counted(__global const uint *c, uint stride)
 KERNEL void list_fill(__global const double *dst_wide, struct points dst, double factor,
                       __global const double *wide, struct points src, struct index s, INDEX,
                       __global const uint *order, uint mapped, struct stretch t,
-                      __global const uint *counts, __global const uint *first, __global uint *common,
-                      __global uint *step, __global const ulong *total, uint slot, ulong room)
+                      __global const uint *counts, __global const uint *first,
+                      __global uint *common, __global uint *step, __global const ulong *total,
+                      uint slot, ulong room)
 {
     const ulong begin = get_global_id(0) * MANY, end = min(begin + MANY, (ulong)t.n);
 
@@ -159,8 +161,7 @@ KERNEL void list_fill(__global const double *dst_wide, struct points dst, double
         const uint group = t.from + (uint)k;
         const struct found f = counted(counts + k, t.stride);
 
-        common[group] =
-            f.n[BOTH] + max(f.n[LOWER], f.n[UPPER]) - min(f.n[LOWER], f.n[UPPER]);
+        common[group] = f.n[BOTH] + max(f.n[LOWER], f.n[UPPER]) - min(f.n[LOWER], f.n[UPPER]);
         if (counts[k + HERE * t.stride] && total[slot + 1] <= room) {
             struct asked q;
 
@@ -170,8 +171,8 @@ KERNEL void list_fill(__global const double *dst_wide, struct points dst, double
     }
 }
 
-/* Of a work group's groups: true pairs within reach, no particle with itself; destinations with more than `most`.
- * Where nobody counts only groups are looked at that may have those. */
+/* Of a work group's groups: true pairs within reach, no particle with itself; destinations with
+ * more than `most`. Where nobody counts only groups are looked at that may have those. */
 KERNEL void list_pairs(__global const double *dst_wide, struct points dst,
                        __global const double *wide, struct points src, uint same, uint groups,
                        uint counts, ulong most, __global const uint *begin,

@@ -1,19 +1,20 @@
-/* opencl/search.cl -- which sources are near a box: leaves of eight sources, which stand side by side in the
- * search's order, and how those are found that may be.
+/* opencl/search.cl -- which sources are near a box: leaves of eight sources, which stand side by
+ * side in the search's order, and how those are found that may be.
  *
- * SEARCH 0: a tree of bounding boxes, eight leaves to a block and eight blocks to one above, each box with the
- * largest reach in it, for sources that stand in cell order or in Morton order. 1: cells of a grid as wide as the
- * largest reach, begin[cell] being the first source of each. 2: the same cells by sorted keys, found by
- * bisection, for boxes that are mostly empty; there, boxes are of leaves alone. What is found may have leaves too many: the filter of lists.cl decides.
- * Leaves come ascending, each once. INDEX: the
- * structure as arguments `rows`, what finds a row of cells in a grid, and `box`, the boxes. */
+ * SEARCH 0: a tree of bounding boxes, eight leaves to a block and eight blocks to one above, each
+ * box with the largest reach in it, for sources that stand in cell order or in Morton order. 1:
+ * cells of a grid as wide as the largest reach, begin[cell] being the first source of each. 2: the
+ * same cells by sorted keys, found by bisection, for boxes that are mostly empty; there, boxes are
+ * of leaves alone. What is found may have leaves too many: the filter of lists.cl decides. Leaves
+ * come ascending, each once. INDEX: the structure as arguments `rows`, what finds a row of cells in
+ * a grid, and `box`, the boxes. */
 
 /* Every reach is enlarged so much where leaves are left out as a whole, as on the host. */
 #define MARGIN 1e-4
 #define BLOCK ((2 * DIM + 1) * 8) /* doubles: lo, hi of each axis, reach, of eight boxes each */
 
-/* What is asked for, by eight lanes: sources nearer to one of them than the larger of its reach and their own.
- * The box is around all of them; spread: it is much larger than a reach. */
+/* What is asked for, by eight lanes: sources nearer to one of them than the larger of its reach and
+ * their own. The box is around all of them; spread: it is much larger than a reach. */
 struct asked {
     double x[DIM][8], r2[8];
     double lo[DIM], hi[DIM], reach, least;
@@ -181,15 +182,15 @@ INLINE void walk_down(struct walk *w, const struct index *s, __global const doub
     w->mask[level] = near_mask(s, box, q, level, block, 0xffu);
 }
 
-INLINE void walk_begin(struct walk *w, const struct index *s, ROWS rows,
-                       __global const double *box, const struct asked *q)
+INLINE void walk_begin(struct walk *w, const struct index *s, ROWS rows, __global const double *box,
+                       const struct asked *q)
 {
     w->top = s->n_level - 1;
     walk_down(w, s, box, q, w->top, 0);
 }
 
-/* The next block of eight leaves, and which of them: its number is eight times that of the first. False:
- * there are no more. */
+/* The next block of eight leaves, and which of them: its number is eight times that of the first.
+ * False: there are no more. */
 INLINE bool walk_next(struct walk *w, const struct index *s, ROWS rows, __global const double *box,
                       const struct asked *q, uint *block, uint *mask)
 {
@@ -293,8 +294,8 @@ INLINE void walk_row(struct walk *w, const struct index *s, ROWS rows, const str
     }
 }
 
-INLINE void walk_begin(struct walk *w, const struct index *s, ROWS rows,
-                       __global const double *box, const struct asked *q)
+INLINE void walk_begin(struct walk *w, const struct index *s, ROWS rows, __global const double *box,
+                       const struct asked *q)
 {
     const double reach = fmax(q->reach, s->reach) * (1 + MARGIN);
 

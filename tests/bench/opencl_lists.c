@@ -1,6 +1,6 @@
-/* tests/bench/opencl_lists.c -- what neighbour lists and order cost on an OpenCL device beside the host, in one run:
- * for each of them the least of several times, host and device in turns; wall clock, and processor time of all
- * threads, which others on the machine change less. */
+/* tests/bench/opencl_lists.c -- what neighbour lists and order cost on an OpenCL device beside the
+ * host, in one run: for each of them the least of several times, host and device in turns; wall
+ * clock, and processor time of all threads, which others on the machine change less. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

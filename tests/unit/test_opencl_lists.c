@@ -1,5 +1,6 @@
-/* tests/unit/test_opencl_lists.c -- neighbour lists and the order of particles on a device against those of the host,
- * with every manager, as for processors and as for others. Skips itself where there is no device. */
+/* tests/unit/test_opencl_lists.c -- neighbour lists and the order of particles on a device against
+ * those of the host, with every manager, as for processors and as for others. Skips itself where
+ * there is no device. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -76,7 +77,8 @@ static void lists_free(struct lists *l)
     free(l->step);
 }
 
-/* A device's list has what the host's has within reach, each half's sources once, and nothing beyond. */
+/* A device's list has what the host's has within reach, each half's sources once, and nothing
+ * beyond. */
 static void compare(const struct group_list *host, const struct device_list *list,
                     const struct cloud *dst, const struct cloud *src, bool symmetric, bool same)
 {
@@ -203,6 +205,10 @@ static void even_clouds(void **state)
         cloud_shuffle(&l, 3);
         sort_cloud(&l);
         lists_of(&l.c, &l.c, true);
+        for (size_t i = 0; i < o.c.n; i++) { /* each alone, or nearly so */
+            o.h[i] *= 0.02;
+        }
+        lists_of(&o.c, &o.c, true);
         cloud_free(&o);
         cloud_free(&l);
     }
@@ -316,7 +322,8 @@ static void small_and_odd(void **state)
     }
 }
 
-/* Outliers in an empty box; one that reaches everything; more sources than a slot or a bundle has room for. */
+/* Outliers in an empty box; one that reaches everything; more sources than a slot or a bundle has
+ * room for. */
 static void far_and_near(void **state)
 {
     (void)state;

@@ -61,7 +61,9 @@ def quiet(scene):
 
 
 def box(dim, side, scheme, sides, jitter=0.2, **scheme_more):
-    """A box of barotropic gas or of water with a flow in it."""
+    """A box of barotropic gas or of water with a flow in it; sides: one word for all, or by axis."""
+    if isinstance(sides, str):
+        sides = {axis: sides for axis in "xyz"[:dim]}
     waves = {
         1: ["0.1 * sin(2*pi*x)"],
         2: ["0.1 * sin(2*pi*x)*cos(2*pi*y)", "-0.1 * cos(2*pi*x)*sin(2*pi*y)"],

@@ -84,8 +84,8 @@ INLINE uint bundle_find(uint *leaf, const struct span *b, const struct index *s,
         q.lo[a] = b->lo[a];
         q.hi[a] = b->hi[a];
     }
-    walk_begin(&w, s, found_in, &q);
-    while (walk_next(&w, s, found_in, &q, &block, &mask)) {
+    walk_begin(&w, s, FOUND_IN, &q);
+    while (walk_next(&w, s, FOUND_IN, &q, &block, &mask)) {
         n += put_bits(leaf + n, table, mask, block * 8);
         if (n > LEAVES) {
             break;
@@ -316,7 +316,7 @@ KERNEL void bundles_look(__global const double *dst_wide, struct points dst, dou
     const uint first = t.from + (uint)get_global_id(0) * BUNDLE_RUN;
     const uint last = min(first + BUNDLE_RUN, t.from + t.n);
     float8 pack[LEAVES * PACK];
-    float box[LEAVES * (2 * DIM + 1)];
+    float near[LEAVES * (2 * DIM + 1)];
     uint leaf[LEAVES + 8], chosen[LEAVES + 8];
     struct span next;
 
@@ -340,14 +340,14 @@ KERNEL void bundles_look(__global const double *dst_wide, struct points dst, dou
             b = both;
         }
         if (whole) {
-            n = bundle_find(leaf, &b, &s, found_in, table);
+            n = bundle_find(leaf, &b, &s, FOUND_IN, table);
             if (n > LEAVES && end > group + 1) {
                 b = alone;
                 end = group + 1;
                 if (end < last) {
                     span_of(&next, dst_wide, dst, factor, end);
                 }
-                n = bundle_find(leaf, &b, &s, found_in, table);
+                n = bundle_find(leaf, &b, &s, FOUND_IN, table);
             }
         }
         const double inverse = 1 / b.reach;
@@ -355,7 +355,7 @@ KERNEL void bundles_look(__global const double *dst_wide, struct points dst, dou
 
         FOR_AXES centre[a] = b.lo[a] + (b.hi[a] - b.lo[a]) / 2;
         if (n <= LEAVES) {
-            bundle_pack(pack, box, leaf, n, centre, inverse, wide, src);
+            bundle_pack(pack, near, leaf, n, centre, inverse, wide, src);
         }
         for (; group < end; group++) {
             const uint k = group - t.from;
@@ -369,10 +369,10 @@ KERNEL void bundles_look(__global const double *dst_wide, struct points dst, dou
 
                 lanes_of(&lanes, dst_wide, dst, factor, group, centre, inverse);
                 if (lanes.uniform) {
-                    group_take(&f, slot, room, pack, box, leaf, n, chosen, &lanes,
+                    group_take(&f, slot, room, pack, near, leaf, n, chosen, &lanes,
                                mapped ? NONE : group, table, true);
                 } else {
-                    group_take(&f, slot, room, pack, box, leaf, n, chosen, &lanes,
+                    group_take(&f, slot, room, pack, near, leaf, n, chosen, &lanes,
                                mapped ? NONE : group, table, false);
                 }
                 most = max(f.n[BOTH], max(f.n[LOWER], f.n[UPPER])) + 16;

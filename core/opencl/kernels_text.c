@@ -29,7 +29,9 @@ const sph_device_point *pass_after(const struct pass *p)
 
 const sph_device_point *pass_point(const struct pass *p)
 {
-    if (p->shape == SPH_PAIR || p->assignment)
+    if (p->assignment)
+        return assignment_device(p->assignment);
+    if (p->shape == SPH_PAIR)
         return NULL;
     return p->function ? p->function->device_run : entry_eos(p->use.entry)->device;
 }
@@ -256,6 +258,25 @@ static void put_back(struct kernel_text *t, const struct pass *p, const sph_list
     }
 }
 
+/* What `before` has written, for sweeps in floats that read it of others. */
+static void put_mirrors(struct kernel_text *t, const struct pass *p, const sph_list *list)
+{
+    const size_t a = p->dst.array;
+
+    for (uint32_t i = 0; i < list->count; i++) {
+        const sph_device_value *v = list_at(list, i);
+        const int column = p->dst.column[v->index];
+        const int32_t mirror = t->arena[a].place[column].mirror;
+        if (mirror < 0 || column == t->plan->array[a].position)
+            continue;
+        for (uint32_t c = 0; c < components_of(t, p, v); c++)
+            fprintf(t->out,
+                    is_array(v) ? "    sph_n%zu[%uul * sph_p%zu + sph_o] = (float)%s[%u];\n"
+                                : "    sph_n%zu[%uul * sph_p%zu + sph_o] = (float)%s;\n",
+                    a, (uint32_t)mirror + c, a, v->name, c);
+    }
+}
+
 /* The body of one particle, number sph_o. */
 static void put_point(struct kernel_text *t, size_t k, const sph_device_point *d, const char *role)
 {
@@ -286,6 +307,10 @@ static void put_point(struct kernel_text *t, size_t k, const sph_device_point *d
     put_prelude_end(t->out, d->prelude);
     put_back(t, p, &d->inout);
     put_back(t, p, &d->out);
+    if (*role == 'b' && t->shape->phased && t->shape->stage->real == SPH_F32) {
+        put_mirrors(t, p, &d->inout);
+        put_mirrors(t, p, &d->out);
+    }
     fputs("    #undef sph_fail\n    }\n", t->out);
 }
 

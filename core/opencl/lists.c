@@ -34,9 +34,10 @@ struct stretch {
     uint32_t from, n, stride, pad;
 };
 
-static const struct device_buffer *index_of(const struct device_search *s)
+/* What finds a row of cells; a tree has none and looks at nothing there. */
+static const struct device_buffer *rows_of(const struct device_search *s)
 {
-    return s->kind == SEARCH_TREE ? &s->box : s->kind == SEARCH_CELLS ? &s->begin : &s->key;
+    return s->kind == SEARCH_TREE ? &s->counts : s->kind == SEARCH_CELLS ? &s->begin : &s->key;
 }
 
 static const struct device_buffer *order_of(const struct job *j)
@@ -47,8 +48,8 @@ static const struct device_buffer *order_of(const struct job *j)
 #define COMMON_ARGS                                                                                \
     DEVICE_BUFFER(j->dst->wide), DEVICE_VALUE(j->to), DEVICE_VALUE(j->factor),                     \
         DEVICE_BUFFER(j->wide), DEVICE_VALUE(j->from), DEVICE_VALUE(j->ix),                        \
-        DEVICE_BUFFER(index_of(s)), DEVICE_BUFFER(order_of(j)), DEVICE_VALUE(j->mapped),           \
-        DEVICE_VALUE(*t)
+        DEVICE_BUFFER(rows_of(s)), DEVICE_BUFFER(&s->box), DEVICE_BUFFER(order_of(j)),             \
+        DEVICE_VALUE(j->mapped), DEVICE_VALUE(*t)
 
 /* Makes the lists of a stretch of groups, the slot-th. */
 static int slab(const struct job *j, const struct stretch *t, uint32_t slot, struct error *e)

@@ -41,8 +41,8 @@ INLINE struct found group_do(const struct asked *q, const struct index *s, INDEX
     struct walk w;
     uint block, mask;
 
-    walk_begin(&w, s, found_in, q);
-    while (walk_next(&w, s, found_in, q, &block, &mask)) {
+    walk_begin(&w, s, FOUND_IN, q);
+    while (walk_next(&w, s, FOUND_IN, q, &block, &mask)) {
         for (; mask; mask &= mask - 1) {
             const uint first = (block * 8 + first_bit(mask)) * 8;
             const uint last = min(first + 8, s->n);
@@ -91,7 +91,7 @@ KERNEL void list_count(__global const double *dst_wide, struct points dst, doubl
             struct found f;
 
             ask(&q, dst_wide, dst, factor, group * 8, min(group * 8 + 8, dst.n));
-            f = group_do(&q, &s, found_in, wide, src, order, mapped, group, 0, 0);
+            f = group_do(&q, &s, FOUND_IN, wide, src, order, mapped, group, 0, 0);
             c[ALL * t.stride] = f.n[BOTH] + f.n[LOWER] + f.n[UPPER];
             c[BOTH * t.stride] = f.n[BOTH];
             c[LOWER * t.stride] = f.n[LOWER];
@@ -127,7 +127,7 @@ KERNEL void list_fill(__global const double *dst_wide, struct points dst, double
             struct asked q;
 
             ask(&q, dst_wide, dst, factor, group * 8, min(group * 8 + 8, dst.n));
-            group_do(&q, &s, found_in, wide, src, order, mapped, group, &f, step + first[group]);
+            group_do(&q, &s, FOUND_IN, wide, src, order, mapped, group, &f, step + first[group]);
         }
     }
 }

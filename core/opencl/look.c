@@ -33,7 +33,7 @@ struct entry {
 struct look {
     struct device *d;
     struct device_program *program;
-    struct device_kernel *columns, *totals;
+    struct device_kernel *columns, *totals, *groups;
     struct device_buffer entries, wrong, part;
     bool asked; /* something was looked at since `wrong` was read */
 };
@@ -50,6 +50,7 @@ int look_open(struct look **out, struct device *d, int dim, struct error *e)
     if (device_build(d, &l->program, look_text, options, "the look at columns", e) ||
         device_kernel(d, l->program, "look_columns", "look", &l->columns, e) ||
         device_kernel(d, l->program, "look_totals", "totals", &l->totals, e) ||
+        device_kernel(d, l->program, "look_groups", "look", &l->groups, e) ||
         device_reserve(d, &l->wrong, sizeof(uint32_t), "flags", e) ||
         device_fill(d, &l->wrong, 0, 0, sizeof(uint32_t), e))
         return -1;
@@ -65,6 +66,16 @@ void look_close(struct look *l)
     device_release(l->d, &l->part);
     device_program_free(l->d, l->program);
     free(l);
+}
+
+static uint64_t at(const struct arena *a, int column)
+{
+    return column < 0 ? 0 : (uint64_t)a->place[column].slot * a->plane;
+}
+
+static uint32_t size_of(const struct arena *a, int column)
+{
+    return column < 0 ? 0 : a->place[column].size;
 }
 
 /* -- Columns -------- */
@@ -136,17 +147,35 @@ int look_wrong(struct look *l, bool *wrong, struct error *e)
     return 0;
 }
 
+int look_groups(struct look *l, const struct arena *a, int column, uint64_t *n, struct error *e)
+{
+    const uint32_t particles = (uint32_t)a->n, block = BLOCK,
+                   blocks = (particles + BLOCK - 1) / BLOCK;
+    const uint64_t from = at(a, column);
+    const size_t bytes = blocks * sizeof(uint32_t);
+    uint32_t *part;
+    int status;
+
+    *n = 0;
+    if (!particles)
+        return 0;
+    if (device_reserve(l->d, &l->part, bytes, "flags", e))
+        return -1;
+    const struct device_arg arg[] = {DEVICE_BUFFER(&a->narrow), DEVICE_VALUE(from),
+                                     DEVICE_VALUE(particles), DEVICE_VALUE(block),
+                                     DEVICE_BUFFER(&l->part)};
+    part = malloc(bytes);
+    status = part ? device_launch(l->d, l->groups, blocks, arg, sizeof(arg) / sizeof(arg[0]), e)
+                  : error_memory(e, "flags", bytes);
+    if (!status)
+        status = device_read(l->d, &l->part, 0, part, bytes, e);
+    for (uint32_t b = 0; !status && b < blocks; b++)
+        *n += part[b];
+    free(part);
+    return status;
+}
+
 /* -- Totals -------- */
-
-static uint64_t at(const struct arena *a, int column)
-{
-    return column < 0 ? 0 : (uint64_t)a->place[column].slot * a->plane;
-}
-
-static uint32_t size_of(const struct arena *a, int column)
-{
-    return column < 0 ? 0 : a->place[column].size;
-}
 
 static void add(struct look_totals *t, const double *part)
 {

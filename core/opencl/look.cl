@@ -32,6 +32,25 @@ __kernel void look_columns(__global const double *wide, __global const float *na
         *wrong = 1; /* whoever writes, writes this */
 }
 
+/* Groups of 8 with a flag that is set, of every block. */
+__kernel void look_groups(__global const int *narrow, const ulong at, const uint n, const uint block,
+                          __global uint *part)
+{
+    const uint b = (uint)get_global_id(0), first = b * block;
+    if (first >= n)
+        return;
+    const uint end = min(first + block, n);
+    __global const int *flags = narrow + at;
+    uint found = 0;
+    for (uint i = first; i < end; i += 8) {
+        int any = 0;
+        for (uint k = i; k < min(i + 8, end); k++)
+            any |= flags[k];
+        found += any != 0;
+    }
+    part[b] = found;
+}
+
 /* mass, kinetic, momentum's and angular momentum's scales, momentum, angular momentum: of every block. */
 #define SUMS 10
 __kernel void look_totals(__global const double *wide, __global const float *narrow,

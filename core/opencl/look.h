@@ -23,6 +23,9 @@ int look_at_columns(struct look *l, const struct arena *a, const struct look_col
 /* Whether anything was wrong since last asked. Waits. */
 int look_wrong(struct look *l, bool *wrong, struct error *e);
 
+/* Of an int32 column: how many groups of SPH_LANES particles have one that is not 0. Waits. */
+int look_groups(struct look *l, const struct arena *a, int column, uint64_t *n, struct error *e);
+
 /* Sums over the real particles of one array, block by block as run/totals.c has them. velocity: a column, or -1. */
 struct look_totals {
     double mass, kinetic, momentum_scale, angular_scale;

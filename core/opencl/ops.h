@@ -86,6 +86,8 @@ struct ops_skin {
     size_t n;
 };
 void ops_skin_release(struct ops *o, struct ops_skin *s);
+/* Elements of x from one component to the next, and of h in all. */
+size_t ops_skin_stride(const struct ops_skin *s);
 int ops_skin_keep(struct ops *o, struct ops_skin *s, const struct arena *a, int position,
                   int smoothing, struct error *e);
 /* skin_change: *moved, *room as in struct skin_change; reach = scale * h. NaN if the number of

@@ -96,7 +96,7 @@ int ops_wrong(struct ops *o, const struct arena *a, int column, double least, ui
 /* -- Lists: are they still right? -------- */
 
 /* Elements from one component of what is kept to the next; as many behind the last are read as a column has. */
-static size_t stride_of(const struct ops_skin *s)
+size_t ops_skin_stride(const struct ops_skin *s)
 {
     return (s->n + 2 * PARTICLES_PAD - 1) / PARTICLES_PAD * PARTICLES_PAD + 16;
 }
@@ -104,7 +104,7 @@ static size_t stride_of(const struct ops_skin *s)
 static int keep(struct ops *o, struct device_buffer *to, const struct arena *a, int column,
                 uint32_t ncomp, const struct ops_skin *s, struct error *e)
 {
-    const uint64_t plane = a->plane, stride = stride_of(s), n = s->n;
+    const uint64_t plane = a->plane, stride = ops_skin_stride(s), n = s->n;
     const uint32_t slot = ops_slot(a, column);
     if (device_reserve(o->d, to, ncomp * stride * sizeof(double), "places of particles", e))
         return -1;
@@ -127,7 +127,7 @@ int ops_skin_keep(struct ops *o, struct ops_skin *s, const struct arena *a, int 
 int ops_skin_begin(struct ops *o, const struct ops_skin *s, const struct arena *a, int position,
                    int smoothing, double scale, double skin, size_t k, struct error *e)
 {
-    const uint64_t plane = a->plane, n = a->n, groups = groups_for(n), stride = stride_of(s);
+    const uint64_t plane = a->plane, n = a->n, groups = groups_for(n), stride = ops_skin_stride(s);
     const uint32_t x = ops_slot(a, position), h = ops_slot(a, smoothing);
     if (s->n != a->n || !s->x.mem) /* of others: NaN */
         return device_fill(o->d, &o->words, sizeof(struct ops_words) + k * sizeof(double),

@@ -80,8 +80,8 @@ static int crowds(struct device_search *s, const struct search_points *p,
     if (n == 0) {
         return 0;
     }
-    if (device_reserve(s->d, &s->copy, (size_t)s->dim * c->n * sizeof(double),
-                       "the order of particles", e) != 0) {
+    if (device_reserve(s->d, &s->copy, 4 * c->n * sizeof(double), "the order of particles", e) !=
+        0) {
         return -1;
     }
     return SEARCH_LAUNCH(s, K_CROWDS, n, DEVICE_BUFFER(c->wide), DEVICE_VALUE(*p), DEVICE_VALUE(id),

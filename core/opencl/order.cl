@@ -92,54 +92,40 @@ KERNEL void cells_sort(__global const double *wide, struct points p, ulong id, u
 
 /* -- A crowded cell -------- */
 
-/* Its members: copies of their positions, their indices; all by their places in the whole order. */
+/* Its members, by their places in the whole order: where they are, and in the last number their index. */
 struct crowd {
-    __global double *x;
-    __global uint *i;
+    __global double4 *m;
     __global const double *wide;
-    ulong n, id;
+    ulong id;
     bool turned[3]; /* axes along which it is walked from high to low */
     ulong seed;
 };
 
-struct member {
-    double x[DIM];
-    uint i;
-};
-
-INLINE struct member member_get(const struct crowd *c, uint k)
+INLINE double coordinate(double4 m, uint axis)
 {
-    struct member m;
-
-    FOR_AXES m.x[a] = c->x[a * c->n + k];
-    m.i = c->i[k];
-    return m;
+    return axis == 0 ? m.s0 : axis == 1 ? m.s1 : m.s2;
 }
 
-INLINE void member_set(const struct crowd *c, uint k, const struct member *m)
+INLINE uint index_of(double4 m)
 {
-    FOR_AXES c->x[a * c->n + k] = m->x[a];
-    c->i[k] = m->i;
+    return (uint)as_ulong(m.s3);
 }
 
-INLINE bool member_before(const struct crowd *c, double x, uint i, double y, uint j, uint axis)
+INLINE bool member_before(const struct crowd *c, double4 a, double4 b, uint axis)
 {
+    const double x = coordinate(a, axis), y = coordinate(b, axis);
     const bool below = x < y, above = x > y;
 
-    return below || above ? below != c->turned[axis] : before_id(c->wide, c->id, i, j);
-}
-
-INLINE bool place_before(const struct crowd *c, uint k, uint q, uint axis)
-{
-    return member_before(c, c->x[axis * c->n + k], c->i[k], c->x[axis * c->n + q], c->i[q], axis);
+    return below || above ? below != c->turned[axis]
+                          : before_id(c->wide, c->id, index_of(a), index_of(b));
 }
 
 INLINE void member_swap(const struct crowd *c, uint k, uint q)
 {
-    const struct member a = member_get(c, k), b = member_get(c, q);
+    const double4 m = c->m[k];
 
-    member_set(c, k, &b);
-    member_set(c, q, &a);
+    c->m[k] = c->m[q];
+    c->m[q] = m;
 }
 
 /* One of [first, last), in the middle of three that were drawn: which changes the time, not the result. */
@@ -152,8 +138,10 @@ INLINE uint draw_pivot(struct crowd *c, uint first, uint last, uint axis)
         p[k] = first + (uint)((c->seed >> 33) % (last - first));
     }
     for (int k = 0; k < 3; k++) {
-        if (place_before(c, p[(k + 1) % 3], p[k], axis) &&
-            place_before(c, p[k], p[(k + 2) % 3], axis)) {
+        const double4 m = c->m[p[k]];
+
+        if (member_before(c, c->m[p[(k + 1) % 3]], m, axis) &&
+            member_before(c, m, c->m[p[(k + 2) % 3]], axis)) {
             return p[k];
         }
     }
@@ -168,19 +156,22 @@ INLINE void part(struct crowd *c, uint first, uint last, uint want, uint axis)
         uint low = first;
 
         member_swap(c, pivot, last - 1);
-        const struct member p = member_get(c, last - 1);
-        const double px = p.x[axis];
+        const double4 p = c->m[last - 1];
+        const double px = coordinate(p, axis);
+        const bool turned = c->turned[axis];
 
         for (uint k = first; k + 1 < last; k++) {
-            const struct member here = member_get(c, k);
+            const double4 here = c->m[k];
+            const double x = coordinate(here, axis);
+            bool is_before = turned ? x > px : x < px;
 
-            if (member_before(c, here.x[axis], here.i, px, p.i, axis)) {
-                const struct member there = member_get(c, low);
-
-                member_set(c, k, &there);
-                member_set(c, low, &here);
-                low++;
+            if (x == px) {
+                is_before = before_id(c->wide, c->id, index_of(here), index_of(p));
             }
+            /* Changes places in any case: which are before the pivot no processor foresees. */
+            c->m[k] = c->m[low];
+            c->m[low] = here;
+            low += is_before;
         }
         member_swap(c, low, last - 1);
         if (want == low || want == low + 1) {
@@ -196,21 +187,20 @@ INLINE void part(struct crowd *c, uint first, uint last, uint want, uint axis)
 
 INLINE uint longest_axis(const struct crowd *c, uint first, uint last)
 {
+    double4 lo = INFINITY, hi = -INFINITY;
     double extent = -1;
     uint axis = 0;
 
+    for (uint k = first; k < last; k++) {
+        const double4 m = c->m[k];
+
+        lo = m < lo ? m : lo;
+        hi = m > hi ? m : hi;
+    }
     FOR_AXES
     {
-        double lo = INFINITY, hi = -INFINITY;
-
-        for (uint k = first; k < last; k++) {
-            const double x = c->x[a * c->n + k];
-
-            lo = x < lo ? x : lo;
-            hi = x > hi ? x : hi;
-        }
-        if (hi - lo > extent) {
-            extent = hi - lo;
+        if (coordinate(hi, a) - coordinate(lo, a) > extent) {
+            extent = coordinate(hi, a) - coordinate(lo, a);
             axis = a;
         }
     }
@@ -221,7 +211,7 @@ INLINE uint longest_axis(const struct crowd *c, uint first, uint last)
  * is sorted by x. Cells are walked upwards along x, and along the others in turns. */
 KERNEL void crowds_sort(__global const double *wide, struct points p, ulong id, uint row,
                         __global const uint *end, __global uint *order, __global const uint *crowd,
-                        __global double *copy)
+                        __global double4 *copy)
 {
     const uint k = (uint)get_global_id(0);
     uint from[STACK], to[STACK], depth = 1;
@@ -231,12 +221,15 @@ KERNEL void crowds_sort(__global const double *wide, struct points p, ulong id, 
     }
     const uint cell = crowd[1 + k];
     const bool turn = cell % row % 2 != 0;
-    struct crowd c = {copy, order, wide, p.n, id, {false, turn, turn}, cell};
+    struct crowd c = {copy, wide, id, {false, turn, turn}, cell};
 
     from[0] = cell > 0 ? end[cell - 1] : 0;
     to[0] = end[cell];
     for (uint q = from[0]; q < to[0]; q++) {
-        FOR_AXES copy[a * c.n + q] = wide[p.x + a * p.plane + order[q]];
+        double x[3] = {0.0, 0.0, 0.0};
+
+        FOR_AXES x[a] = wide[p.x + a * p.plane + order[q]];
+        copy[q] = (double4)(x[0], x[1], x[2], as_double((ulong)order[q]));
     }
     while (depth > 0) {
         const uint first = from[--depth], last = to[depth];
@@ -244,9 +237,12 @@ KERNEL void crowds_sort(__global const double *wide, struct points p, ulong id, 
 
         if (stop - begin < 2) {
             for (uint q = first + 1; q < last; q++) {
-                for (uint r = q; r > first && place_before(&c, r, r - 1, 0); r--) {
+                for (uint r = q; r > first && member_before(&c, c.m[r], c.m[r - 1], 0); r--) {
                     member_swap(&c, r, r - 1);
                 }
+            }
+            for (uint q = first; q < last; q++) {
+                order[q] = index_of(c.m[q]);
             }
             continue;
         }

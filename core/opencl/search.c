@@ -58,9 +58,7 @@ static int programs(struct device_search *s, struct error *e)
     status = device_build(s->d, &s->program, text, options, "the neighbour search", e);
     free(text);
     for (int k = 0; k < SEARCH_KERNELS && status == 0; k++) {
-        const bool tree = k == K_LEAVES || k == K_BOXES, bundles = k == K_LOOK || k == K_PUT;
-
-        if ((tree && s->kind != SEARCH_TREE) || (bundles && !s->cpu)) {
+        if ((k == K_LOOK || k == K_PUT) && !s->cpu) {
             continue;
         }
         status = device_kernel(s->d, s->program, name[k],
@@ -265,16 +263,17 @@ static unsigned bits_in(double last)
 
 /* -- The structures -------- */
 
-/* A tree over the sources as they stand, or in Morton order. *scattered: leaves much larger than a reach. */
-static int tree_make(struct device_search *s, const struct device_buffer *wide,
-                     const struct search_points *p, double typical, struct search_index *ix,
-                     uint32_t *scattered, struct error *e)
+/* Boxes of the sources' leaves, and of a tree's higher levels. *scattered: leaves much larger than a reach. */
+static int boxes_make(struct device_search *s, const struct device_buffer *wide,
+                      const struct search_points *p, double typical, struct search_index *ix,
+                      uint32_t *scattered, struct error *e)
 {
     const size_t block = (size_t)(2 * s->dim + 1) * LANES * sizeof(double);
     size_t nodes = ix->n_leaf, blocks = 0;
     const uint32_t first = (uint32_t)search_items(nodes, LANES);
 
-    for (ix->n_level = 0; ix->n_level == 0 || nodes > 1; ix->n_level++) {
+    for (ix->n_level = 0; ix->n_level == 0 || (nodes > 1 && s->kind == SEARCH_TREE);
+         ix->n_level++) {
         ix->offset[ix->n_level] = (uint32_t)blocks;
         ix->nodes[ix->n_level] = (uint32_t)nodes;
         nodes = search_items(nodes, LANES);
@@ -391,10 +390,12 @@ int search_make(struct device_search *s, const struct device_cloud *src,
         const int status = s->kind == SEARCH_CELLS ? cells_make(s, src, all, query, ix, e)
                                                    : keys_make(s, src, all, query, ix, e);
 
-        return status == 0 ? copy(s, src, symmetric, p, e) : -1;
+        return status == 0 && copy(s, src, symmetric, p, e) == 0
+                   ? boxes_make(s, &s->copy, p, typical, ix, &scattered, e)
+                   : -1;
     }
     if (!s->own_order) {
-        if (tree_make(s, src->wide, p, typical, ix, &scattered, e) != 0) {
+        if (boxes_make(s, src->wide, p, typical, ix, &scattered, e) != 0) {
             return -1;
         }
         s->own_order = typical > 0 && n_leaf > 64 && scattered > n_leaf / 4;
@@ -405,5 +406,5 @@ int search_make(struct device_search *s, const struct device_cloud *src,
     if (morton(s, src, all, ix, e) != 0 || copy(s, src, symmetric, p, e) != 0) {
         return -1;
     }
-    return tree_make(s, &s->copy, p, typical, ix, &scattered, e);
+    return boxes_make(s, &s->copy, p, typical, ix, &scattered, e);
 }

@@ -4,8 +4,9 @@
  * SEARCH 0: a tree of bounding boxes, eight leaves to a block and eight blocks to one above, each box with the
  * largest reach in it, for sources that stand in cell order or in Morton order. 1: cells of a grid as wide as the
  * largest reach, begin[cell] being the first source of each. 2: the same cells by sorted keys, found by
- * bisection, for boxes that are mostly empty. What is found may have leaves too many: the filter of lists.cl decides.
- * Leaves come ascending, each once. INDEX: the structure as the kernels' argument `found_in`. */
+ * bisection, for boxes that are mostly empty; there, boxes are of leaves alone. What is found may have leaves too many: the filter of lists.cl decides.
+ * Leaves come ascending, each once. INDEX: the
+ * structure as arguments `rows`, what finds a row of cells in a grid, and `box`, the boxes. */
 
 /* Every reach is enlarged so much where leaves are left out as a whole, as on the host. */
 #define MARGIN 1e-4
@@ -39,7 +40,6 @@ INLINE void ask(struct asked *q, __global const double *wide, struct points p, d
     q->spread = !(sum <= 4 * q->least * q->least);
 }
 
-#if SEARCH == 0
 /* -- Boxes -------- */
 
 /* scattered[1]: leaves that are much larger than a reach, their own or `typical`. */
@@ -111,12 +111,6 @@ KERNEL void boxes_make(__global double *box, uint below, uint nodes, uint to, ui
     }
 }
 
-#define INDEX __global const double *found_in
-
-struct walk {
-    uint level, top, block[LEVELS], mask[LEVELS];
-};
-
 /* Which of a block's boxes are near the box asked for. */
 INLINE uint near_box(const struct index *s, __global const double *box, const struct asked *q,
                      uint level, uint block)
@@ -161,18 +155,33 @@ INLINE uint near_lanes(const struct index *s, __global const double *box, const 
     return mask;
 }
 
+/* ... or, if spread, near a lane. */
+INLINE uint near_mask(const struct index *s, __global const double *box, const struct asked *q,
+                      uint level, uint block, uint mask)
+{
+    mask &= near_box(s, box, q, level, block);
+    return q->spread && mask ? near_lanes(s, box, q, level, block, mask) : mask;
+}
+
+#if SEARCH == 0
+/* -- A tree of them -------- */
+
+#define ROWS __global const uint * /* none */
+
+struct walk {
+    uint level, top, block[LEVELS], mask[LEVELS];
+};
+
 INLINE void walk_down(struct walk *w, const struct index *s, __global const double *box,
                       const struct asked *q, uint level, uint block)
 {
-    uint mask = near_box(s, box, q, level, block);
-
     w->level = level;
     w->block[level] = block;
-    w->mask[level] = q->spread && mask ? near_lanes(s, box, q, level, block, mask) : mask;
+    w->mask[level] = near_mask(s, box, q, level, block, 0xffu);
 }
 
-INLINE void walk_begin(struct walk *w, const struct index *s, __global const double *box,
-                       const struct asked *q)
+INLINE void walk_begin(struct walk *w, const struct index *s, ROWS rows,
+                       __global const double *box, const struct asked *q)
 {
     w->top = s->n_level - 1;
     walk_down(w, s, box, q, w->top, 0);
@@ -180,7 +189,7 @@ INLINE void walk_begin(struct walk *w, const struct index *s, __global const dou
 
 /* The next block of eight leaves, and which of them: its number is eight times that of the first. False:
  * there are no more. */
-INLINE bool walk_next(struct walk *w, const struct index *s, __global const double *box,
+INLINE bool walk_next(struct walk *w, const struct index *s, ROWS rows, __global const double *box,
                       const struct asked *q, uint *block, uint *mask)
 {
     for (;;) {
@@ -207,8 +216,7 @@ INLINE bool walk_next(struct walk *w, const struct index *s, __global const doub
 /* -- Cells -------- */
 
 #if SEARCH == 1
-#define INDEX __global const uint *found_in
-#define ROWS __global const uint *
+#define ROWS __global const uint * /* begin */
 
 /* Sources of the cells before this one. */
 INLINE uint before_cell(const struct index *s, ROWS begin, ulong cell)
@@ -216,8 +224,7 @@ INLINE uint before_cell(const struct index *s, ROWS begin, ulong cell)
     return begin[cell];
 }
 #else
-#define INDEX __global const ulong *found_in
-#define ROWS __global const ulong *
+#define ROWS __global const ulong * /* key */
 
 INLINE uint before_cell(const struct index *s, ROWS key, ulong cell)
 {
@@ -293,7 +300,8 @@ INLINE void walk_row(struct walk *w, const struct index *s, ROWS rows, const str
     }
 }
 
-INLINE void walk_begin(struct walk *w, const struct index *s, ROWS rows, const struct asked *q)
+INLINE void walk_begin(struct walk *w, const struct index *s, ROWS rows,
+                       __global const double *box, const struct asked *q)
 {
     const double reach = fmax(q->reach, s->reach) * (1 + MARGIN);
 
@@ -311,8 +319,8 @@ INLINE void walk_begin(struct walk *w, const struct index *s, ROWS rows, const s
     walk_row(w, s, rows, q);
 }
 
-INLINE bool walk_next(struct walk *w, const struct index *s, ROWS rows, const struct asked *q,
-                      uint *block, uint *mask)
+INLINE bool walk_next(struct walk *w, const struct index *s, ROWS rows, __global const double *box,
+                      const struct asked *q, uint *block, uint *mask)
 {
     while (!w->done) {
         uint first = NONE, last = 0;
@@ -329,9 +337,12 @@ INLINE bool walk_next(struct walk *w, const struct index *s, ROWS rows, const st
             const uint end = min(last, first / 8 * 8 + 8);
 
             *block = first / 8;
-            *mask = (0xffu >> (8 - (end - first))) << first % 8;
+            *mask = near_mask(s, box, q, 0, *block, (0xffu >> (8 - (end - first))) << first % 8);
             w->at = end;
-            return true;
+            if (*mask) {
+                return true;
+            }
+            continue;
         }
         if (w->y < w->to[1]) {
             w->y++;
@@ -347,3 +358,6 @@ INLINE bool walk_next(struct walk *w, const struct index *s, ROWS rows, const st
     return false;
 }
 #endif
+
+#define INDEX ROWS rows, __global const double *box
+#define FOUND_IN rows, box

@@ -4,6 +4,7 @@
 #include "scene/expression.h"
 #include <ctype.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -18,7 +19,12 @@ struct assignment {
     sph_prop prop[MOST_VARIABLES];
     struct expression *expression;
     uint32_t n_read; /* props: n_read scalars, then x, then the one that is written */
+    char *device_text, *device_name[MOST_VARIABLES];
+    sph_device_value device_in[MOST_VARIABLES], device_out;
+    sph_device_point device; /* text NULL: there is none */
 };
+
+#define PREFIX "sph_of_" /* of the expression's names on a device, which keeps some for itself */
 
 static sph_status assign(const sph_batch *b)
 {
@@ -70,6 +76,54 @@ static void find_reads(struct assignment *a, const struct particles *p, const ch
     }
 }
 
+/* The same for a device, where the expression can be told in its language. */
+static int make_device(struct assignment *a, const struct plan *plan, const struct step *s,
+                       const char *const *name, struct error *e)
+{
+    static const char *const axis[] = {"x", "y", "z"};
+    const uint32_t n = a->n_read;
+    const sph_prop *target = &a->prop[n + 1];
+    char *c = expression_c(a->expression, s->expression, name, N_ALWAYS + n, PREFIX), *text = NULL;
+    size_t size = 0;
+    FILE *out = c ? open_memstream(&text, &size) : NULL;
+
+    if (!out) {
+        free(c);
+        return 0; /* it is computed on the processor */
+    }
+    for (int k = 0; k < 3; k++)
+        if (k < plan->dim)
+            fprintf(out, "const double " PREFIX "%s = sph_place[%d];\n", axis[k], k);
+        else
+            fprintf(out, "const double " PREFIX "%s = 0.0;\n", axis[k]);
+    fprintf(out,
+            "const double " PREFIX "r = sqrt(" PREFIX "x * " PREFIX "x + " PREFIX "y * " PREFIX
+            "y + " PREFIX "z * " PREFIX "z), " PREFIX "t = b->time;\nsph_assigned = %s%s%s;\n",
+            target->type == SPH_INT32 ? "(int)rint(" : "", c, target->type == SPH_INT32 ? ")" : "");
+    free(c);
+    if (fclose(out) != 0)
+        return error_memory(e, "an assignment", size);
+    a->device_text = text;
+    for (uint32_t k = 0; k < n; k++) {
+        if (plan_name(&a->device_name[k], e, PREFIX "%s", a->prop[k].name))
+            return -1;
+        a->device_in[k] = (sph_device_value){a->device_name[k], k, SPH_SCALAR};
+    }
+    a->device_in[n] = (sph_device_value){"sph_place", n, SPH_VECTOR};
+    a->device_out = (sph_device_value){"sph_assigned", n + 1, target->type};
+    a->device = (sph_device_point){.size = sizeof a->device,
+                                   .text = a->device_text,
+                                   .file = "an expression of the scene",
+                                   .in = {a->device_in, n + 1, sizeof a->device_in[0]},
+                                   .out = {&a->device_out, 1, sizeof a->device_out}};
+    return 0;
+}
+
+const sph_device_point *assignment_device(const struct assignment *a)
+{
+    return a->device.text ? &a->device : NULL;
+}
+
 static int make(struct assignment *a, const struct plan *plan, const struct step *s, size_t array,
                 struct error *e)
 {
@@ -102,7 +156,7 @@ static int make(struct assignment *a, const struct plan *plan, const struct step
     struct error why = {0};
     if (expression_new(&a->expression, s->expression, name, N_ALWAYS + n, &why))
         return document_fail(d, s->node, e, "%s", why.text);
-    return 0;
+    return make_device(a, plan, s, name, e);
 }
 
 int assignment_bind(struct plan *plan, struct pass *pass, const struct step *s, size_t array,
@@ -128,5 +182,8 @@ void assignment_free(struct assignment *a)
     if (!a)
         return;
     expression_free(a->expression);
+    free(a->device_text);
+    for (size_t k = 0; k < MOST_VARIABLES; k++)
+        free(a->device_name[k]);
     free(a);
 }

@@ -7,6 +7,8 @@ bool pass_on_device(const struct plan *plan, const struct pass *p, char *why, si
     const struct entry *entry = p->use.entry;
     const char *lacks = NULL;
 
+    if (p->assignment && assignment_device(p->assignment))
+        return true;
     if (p->assignment) {
         snprintf(why, size, "the expression of \"%s\" is computed on the processor", p->step);
         return false;

@@ -194,6 +194,9 @@ bool plan_changes(const struct plan *plan, size_t array, int column);
 void plan_print(const struct plan *plan, FILE *out);
 cJSON *plan_json(const struct plan *plan);
 
+/* What an assignment does, for a device; NULL: its expression cannot be told there. */
+const sph_device_point *assignment_device(const struct assignment *a);
+
 /* One use of an item: see struct use. */
 int use_init(struct use *u, const struct entry *entry, const sph_item *item, const sph_life *life,
              struct error *e);

@@ -74,15 +74,13 @@ static void keep_doubles(struct plan *plan, bool **doubles)
      * go into doubles and back, which is worth its time in 3D alone: there memory bounds a run. */
     for (size_t a = 0; a < plan->n_array; a++) {
         const int h = plan->array[a].smoothing, x = plan->array[a].position;
-        doubles[a][x] = doubles[a][x] || plan->on_device || plan->dim < 3 || plan->n_frame > 1 ||
-                        is_summed(plan, a, x);
-        doubles[a][h] =
-            doubles[a][h] || plan->on_device || plan->n_frame > 1 || plan_changes(plan, a, h);
-        /* A device has memory to spare for what saves it the second float's arithmetic. */
-        for (size_t k = 0;
-             plan->on_device && plan->precision != PRECISION_SINGLE && k < plan->array[a].n_rate;
-             k++)
-            doubles[a][plan->array[a].rate[k].property] = true;
+        doubles[a][x] =
+            doubles[a][x] || plan->dim < 3 || plan->n_frame > 1 || is_summed(plan, a, x);
+        doubles[a][h] = doubles[a][h] || plan->n_frame > 1 || plan_changes(plan, a, h);
+        /* A device holds everything in doubles: what a destination does alone it does in them. Sweeps
+         * in floats read mirrors. */
+        for (size_t c = 0; plan->on_device && c < plan->array[a].p.n_column; c++)
+            doubles[a][c] = true;
     }
 }
 

@@ -99,6 +99,28 @@ static void reset(const struct work *w, uint64_t first, uint64_t count)
     }
 }
 
+static int position(const struct work *w)
+{
+    return w->r->plan->array[w->p->dst.array].position;
+}
+
+/* What `before` has written into doubles, for sweeps that read and sum in their mirrors. */
+static void reflect(const struct work *w, uint64_t first, uint64_t count)
+{
+    for (uint32_t k = 0; w->p->real == SPH_F32 && k < n_prop(w); k++) {
+        const int column = w->p->dst.column[k];
+        if (!(prop_at(w, k)->access & WRITES) || column == position(w))
+            continue; /* the position's mirror is no float */
+        const struct column *c = &destinations(w)->column[column];
+        for (uint32_t q = 0; c->mirror && q < c->ncomp; q++) {
+            const double *from = (const double *)c->data + q * c->plane + first;
+            float *to = (float *)c->mirror + q * c->plane + first;
+            for (uint64_t i = 0; i < count; i++)
+                to[i] = (float)from[i];
+        }
+    }
+}
+
 /* What the sweeps have summed in mirrors, back into the columns. */
 static void collect(const struct work *w, uint64_t first, uint64_t count)
 {
@@ -199,8 +221,11 @@ static sph_status do_stage(const struct work *w, enum stage stage, char *scratch
     case STAGE_RESET:
         reset(w, first, count);
         return SPH_OK;
-    case STAGE_BEFORE:
-        return alone(w, w->p->before, scratch, first, count);
+    case STAGE_BEFORE: {
+        const sph_status status = alone(w, w->p->before, scratch, first, count);
+        reflect(w, first, count);
+        return status;
+    }
     case STAGE_POINT:
         return alone(w, w->p->run, scratch, first, count);
     case STAGE_SWEEP:

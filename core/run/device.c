@@ -300,16 +300,17 @@ static int iterate(struct run *r, size_t k, struct error *e)
     const struct stage *s = &r->device->stage[k];
     const struct pass *p = &r->plan->pass[s->pass[0]];
     const struct arena *arena = &r->device->arena[s->array];
-    double busy = (double)arena->n, all = busy;
+    const uint64_t all = (arena->n + SPH_LANES - 1) / SPH_LANES;
+    uint64_t busy = all;
 
-    for (uint32_t number = 0; busy > 0.0; number++) {
+    for (uint32_t number = 0; busy > 0; number++) {
         if (sweep(r, k, number, e))
             return -1;
-        count_pairs(r, s, busy / all);
-        if (ops_reduce(r->device->ops, arena, p->unfinished, 0, -1, SPH_REDUCE_SUM, &busy, e))
+        count_pairs(r, s, (double)busy / (double)all);
+        if (look_groups(r->device->look, arena, p->unfinished, &busy, e))
             return -1;
         if (number + 1 >= p->max_sweeps) {
-            r->cost.unfinished += (uint64_t)busy;
+            r->cost.unfinished += busy;
             break;
         }
     }

@@ -73,10 +73,11 @@ static int list_store(struct run *r, struct store *s, size_t k, struct error *e)
 
 static int skin_of_store(struct run *r, struct store *s, struct ops_skin *skin, struct error *e)
 {
-    return store_count(s, "n", &skin->n, e) ||
-                   buffer_store(r, s, "x", STORE_F64, &skin->x, skin->n * (size_t)r->plan->dim,
-                                e) ||
-                   buffer_store(r, s, "h", STORE_F64, &skin->h, skin->n, e)
+    if (store_count(s, "n", &skin->n, e))
+        return -1;
+    const size_t stride = skin->n ? ops_skin_stride(skin) : 0;
+    return buffer_store(r, s, "x", STORE_F64, &skin->x, stride * (size_t)r->plan->dim, e) ||
+                   buffer_store(r, s, "h", STORE_F64, &skin->h, stride, e)
                ? -1
                : 0;
 }

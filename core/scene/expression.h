@@ -5,8 +5,10 @@
 #include "base/error.h"
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #define EXPRESSION_BYTES 4000
+#define EXPRESSION_NAMES 64 /* most that expression_c knows */
 
 struct expression;
 
@@ -20,5 +22,11 @@ void expression_free(struct expression *x);
 double expression_at(struct expression *x, const double *values);
 /* Whether the expression names variable i. */
 bool expression_uses(const struct expression *x, size_t i);
+
+/* The same in OpenCL C: an expression in doubles, every name behind `prefix`. names: those
+ * that x was made with. In fresh memory; NULL: it is one that cannot be told so, by anything that this here does not
+ * understand just as the parser does. */
+char *expression_c(struct expression *x, const char *text, const char *const *names, size_t n,
+                   const char *prefix);
 
 #endif

@@ -95,6 +95,9 @@ static const char *const SPH_CAT(SPH_POINT_LOOP, sentence)[] = {SPH_POINT_FAIL};
 
 static sph_status SPH_POINT_LOOP(const sph_batch *b)
 {
+    if (b->real == SPH_F32)
+        return b->host ? b->host->fail(b->host, SPH_E_INVALID, "this loop is for doubles")
+                       : SPH_E_INVALID;
     return b->dim == 1   ? SPH_CAT(SPH_POINT_LOOP, 1)(b)
            : b->dim == 2 ? SPH_CAT(SPH_POINT_LOOP, 2)(b)
                          : SPH_CAT(SPH_POINT_LOOP, 3)(b);

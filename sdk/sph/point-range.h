@@ -61,8 +61,8 @@
 
 static sph_status SPH_CAT(SPH_POINT_LOOP, DIM)(const sph_batch *b)
 {
-    /* W = 0 where a scene has no kernel. */
-    static const sph_kernel_form sph_none = {0};
+    /* All of it 0: W = 0 where a scene has no kernel. */
+    static sph_kernel_form sph_none;
     FORM sph_local;
     SPH_OF_ISA(sph_form_)(&sph_local, b->kernel ? b->kernel : &sph_none);
     const FORM *const K = &sph_local;

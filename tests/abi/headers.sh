@@ -39,8 +39,8 @@ all() {
     for header in "$top_srcdir"/sdk/sph/*.h; do
         name=sph/${header##*/}
         case $3/$name in
-        # The insides of pair-loop.h, and that itself, which wants a body: see both.c.
-        */lanes*.h | */each-isa.h | */pair-*.h | gnu*) continue ;;
+        # The insides of pair-loop.h and point-loop.h, and those, which want a body: see both.c.
+        */lanes*.h | */each-isa.h | */pair-*.h | */point-*.h | gnu*) continue ;;
         esac
         printf '#include <%s>\n#include <%s>\nint main(void) { return 0; }\n' "$name" "$name" \
             >"$scratch/alone.$2"

@@ -58,7 +58,7 @@ const sph_prop props[] = {
 const sph_item item = {sizeof(sph_item), SPH_ALL_DIMS,     "cold-gas",     "p = cs^2 rho",
                        "",               SPH_LIST(params), SPH_LIST(props)};
 const sph_life life = {sizeof(sph_life), 0, create, destroy};
-const sph_eos eos = {sizeof(sph_eos), 0, &item, &life, run, nullptr, SPH_NO_LIST};
+const sph_eos eos = {sizeof(sph_eos), 0, &item, &life, run, nullptr, SPH_NO_LIST, nullptr};
 
 sph_status init(const sph_host *host)
 {

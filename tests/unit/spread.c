@@ -14,7 +14,7 @@ static const sph_param params[] = {
 static const sph_prop props[] = {
     SPH_PROP("m", "kg", "mass", SPH_SCALAR, SPH_DST_READ | SPH_SRC_READ, 0.0),
     SPH_PROP("share", "", "what sources give", SPH_SCALAR, SPH_SRC_READ | SPH_DST_WRITE, 0.5),
-    SPH_PROP("guess", "", "what destinations add", SPH_SCALAR, SPH_DST_UPDATE, 0.25),
+    SPH_PROP("guess", "", "what destinations add", SPH_SCALAR, SPH_DST_UPDATE | SPH_SRC_READ, 0.25),
     SPH_PROP("total", "", "sum", SPH_SCALAR, SPH_DST_SUM, 0.75),
     SPH_PROP("flow", "", "sum", SPH_VECTOR, SPH_DST_SUM, -0.5),
     SPH_PROP("least", "", "minimum", SPH_SCALAR, SPH_DST_MIN, 1e300),
@@ -25,7 +25,7 @@ static const sph_prop props[] = {
 
 #define SPH_LOOP sweep
 #define SPH_LOOP_I(S, V_, M_) S(guess, GUESS)
-#define SPH_LOOP_J(S, V_, M_) S(m, M) S(share, SHARE)
+#define SPH_LOOP_J(S, V_, M_) S(m, M) S(share, SHARE) S(guess, GUESS)
 #define SPH_LOOP_SUM(S, V_, M_) S(total, TOTAL) V_(flow, FLOW)
 #define SPH_LOOP_MIN(S) S(least, LEAST)
 #define SPH_LOOP_MAX(S) S(most, MOST)

@@ -109,9 +109,9 @@ static void single_precision_is_declined(void **state)
     (void)state;
     trial_init(&use, &registry, eos->item, eos->life, &eos->item->props, 2, NULL, NULL);
     use.batch.real = SPH_F32;
-    assert_int_equal(use_run(&use, eos->run, 0, 0), SPH_E_UNKNOWN);
-    registry_reason(&registry, SPH_E_UNKNOWN, why, sizeof(why));
-    assert_non_null(strstr(why, "single precision"));
+    assert_int_equal(use_run(&use, eos->run, 0, 0), SPH_E_INVALID);
+    registry_reason(&registry, SPH_E_INVALID, why, sizeof(why));
+    assert_non_null(strstr(why, "for doubles"));
     trial_fini(&use);
 }
 

@@ -55,6 +55,52 @@ static void test_values(void **state)
     assert_true(value("x >= 1", 1, 0) == 1);
 }
 
+static bool is_told(const char *text)
+{
+    struct expression *p;
+    struct error e = {0};
+    if (expression_new(&p, text, names, 4, &e) < 0)
+        fail_msg("%s: %s", text, e.text);
+    char *c = expression_c(p, text, names, 4, "my_");
+    const bool told = c != NULL;
+    if (told && strstr(text, "x"))
+        assert_non_null(strstr(c, "my_x"));
+    free(c);
+    expression_free(p);
+    return told;
+}
+
+/* expression_c compares with the parser itself: what it tells is right. */
+static void test_told(void **state)
+{
+    static const char *const told[] = {
+        "1",
+        " -x ^ 2 ",
+        "2^-x",
+        "2 ^ 3 ^ x",
+        "-x * y - -y / 3",
+        "1.5e-3 * (x + y) * z",
+        "x < y == 0",
+        "x < 0 | y < 0 & x > 2",
+        "x < 0 || y < 0 && x > 2",
+        "!(x > 0) + !y * 2",
+        "!x != y",
+        "x < 0 ? y < 0 ? 1 : 2 : x > 3 ? 3 : 4",
+        "min(x, y, 3) + max(x) - sum(x, y, 1) / avg(x, y, z, 2)",
+        "sin(pi * x) + cos(x) + tan(x) + atan(x) + atan2(y, x) + sinh(x) + cosh(x) + tanh(x) + asinh(x)",
+        "asin(x) + acos(x) + acosh(abs(x) + 1) + atanh(x / 100)",
+        "log(abs(x) + 1) + ln(abs(y) + 1) + log2(abs(x) + 2) + log10(abs(y) + 2) + exp(x / 50)",
+        "sqrt(x) + sign(y) + abs(x)",
+        "max(x, y)^2",
+    };
+    (void)state;
+    for (size_t i = 0; i < COUNT(told); i++)
+        if (!is_told(told[i]))
+            fail_msg("not told: %s", told[i]);
+    /* A constant of the parser's own that this knows nothing of. */
+    assert_false(is_told("_e + x"));
+}
+
 static void test_uses(void **state)
 {
     struct expression *p;
@@ -148,8 +194,8 @@ static void test_quiet(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_values), cmocka_unit_test(test_uses),  cmocka_unit_test(test_refused),
-        cmocka_unit_test(test_long),   cmocka_unit_test(test_quiet),
+        cmocka_unit_test(test_values),  cmocka_unit_test(test_told), cmocka_unit_test(test_uses),
+        cmocka_unit_test(test_refused), cmocka_unit_test(test_long), cmocka_unit_test(test_quiet),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

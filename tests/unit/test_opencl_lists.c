@@ -15,6 +15,19 @@
 static struct device *device;
 static struct error e;
 
+/* Kept, for it takes its time to open one: of a dimension and a manager, for a processor or not. */
+static struct device_search *kept[4][4][2];
+
+static struct device_search *search_for(int dim, size_t manager, bool cpu)
+{
+    struct device_search **s = &kept[dim][manager][cpu];
+
+    if (!*s && search_open(s, device, dim, neighbour_manager_at(manager), cpu, &e) != 0) {
+        fail_msg("%s", e.text);
+    }
+    return *s;
+}
+
 /* -- Lists ------------------------------------------------------------------------------------- */
 
 /* Bit 0: the lower half of a group's lanes is within so many reaches of source j, bit 1: the upper. */
@@ -128,7 +141,6 @@ static uint64_t crowded(const struct group_list *host, const struct cloud *dst,
 static void lists_of(const struct cloud *dst, const struct cloud *src, bool same)
 {
     struct there to = cloud_there(device, same ? src : dst, NULL, 5), from = to;
-    const struct neighbour_manager *m;
     uint64_t self = 0;
 
     to.c.n = dst->n;
@@ -140,11 +152,10 @@ static void lists_of(const struct cloud *dst, const struct cloud *src, bool same
     for (size_t i = 0; same && i < dst->n; i++) {
         self += dst->scale * dst->h[i] > 0;
     }
-    for (size_t k = 0; (m = neighbour_manager_at(k / 2)) != NULL; k++) {
-        struct device_search *s;
+    for (size_t k = 0; neighbour_manager_at(k / 2); k++) {
+        struct device_search *s = search_for(dst->dim, k / 2, k % 2);
         struct device_list l = {.n_group = 0};
 
-        assert_int_equal(search_open(&s, device, dst->dim, m, k % 2, &e), 0);
         for (int symmetric = 0; symmetric < 2; symmetric++) {
             struct group_list host = {0};
             const uint64_t most = 15;
@@ -164,7 +175,6 @@ static void lists_of(const struct cloud *dst, const struct cloud *src, bool same
             group_list_fini(&host);
         }
         device_list_release(device, &l);
-        device_search_close(s);
     }
     device_release(device, &to.wide);
     if (!same) {
@@ -317,9 +327,9 @@ static void far_and_near(void **state)
         o.h[3333] = 10;
         lists_of(&o.c, &o.c, true);
         cloud_free(&o);
-        o = cloud_even(dim, 9000, 9);
+        o = cloud_even(dim, 4000, 9);
         for (size_t i = 0; i < o.c.n; i++) {
-            o.h[i] = i % 64 < 32 ? 0.2 : 0.15;
+            o.h[i] = (i % 64 < 32 ? 0.2 : 0.15) * (dim == 3 ? 1.75 : 1);
         }
         sort_cloud(&o);
         lists_of(&o.c, &o.c, true);
@@ -338,13 +348,12 @@ static void wrong_numbers(void **state)
             struct owned o = cloud_even(dim, 1003, 9);
             struct device_buffer order = {0};
             struct device_list l = {.n_group = 0};
-            struct device_search *s;
+            struct device_search *s = search_for(dim, 0, true);
             struct there t;
 
             *(k % 2 ? &o.h[k * 50] : &o.x[dim - 1][k % 4 ? k * 50 : 1002]) = w;
             t = cloud_there(device, &o.c, NULL, 0);
             t.c.wide = &t.wide;
-            assert_int_equal(device_search_open(&s, device, dim, NULL, &e), 0);
             assert_int_equal(device_list_make(s, &l, &t.c, &t.c, true, SKIN, true, 0, &e), -1);
             assert_int_equal(e.exit_code, EXIT_RUN);
             assert_int_equal(l.n_group, 0);
@@ -353,7 +362,6 @@ static void wrong_numbers(void **state)
             device_list_release(device, &l);
             device_release(device, &order);
             device_release(device, &t.wide);
-            device_search_close(s);
             cloud_free(&o);
         }
     }
@@ -367,7 +375,6 @@ static void order_of(const struct owned *o)
     uint32_t *host = malloc((n + 1) * 4), *there = malloc((n + 1) * 4);
     int64_t *id = malloc((n + 1) * sizeof *id);
     struct device_buffer order = {0};
-    struct device_search *s;
     struct there t;
 
     for (size_t i = 0; i < n; i++) {
@@ -377,15 +384,13 @@ static void order_of(const struct owned *o)
     t.c.wide = &t.wide;
     assert_int_equal(cell_order(&o->c, id, cell_best(&o->c), 2, host, &e), 0);
     for (int round = 0; round < 2; round++) {
-        assert_int_equal(search_open(&s, device, o->c.dim, NULL, round, &e), 0);
-        if (device_order(s, &t.c, 0, &order, &e) != 0) {
+        if (device_order(search_for(o->c.dim, 0, round), &t.c, 0, &order, &e) != 0) {
             fail_msg("%s", e.text);
         }
         assert_int_equal(n ? device_read(device, &order, 0, there, n * 4, &e) : 0, 0);
         for (size_t i = 0; i < n; i++) {
             assert_int_equal(there[i], host[i]);
         }
-        device_search_close(s);
     }
     device_release(device, &order);
     device_release(device, &t.wide);
@@ -467,6 +472,9 @@ int main(void)
         return 77;
     }
     status = cmocka_run_group_tests(tests, NULL, NULL);
+    for (struct device_search **s = &kept[0][0][0]; s <= &kept[3][3][1]; s++) {
+        device_search_close(*s);
+    }
     device_close(device);
     return status;
 }

@@ -207,6 +207,6 @@ if device:
     told('it is too "old"', "sph", "all.json", "--device", "opencl", "--quiet", "--out", "failed", "--set",
          "particles.dust.fields.age=2000", status=1)
 told('the expression of "age" is computed on the processor, but functions of the scene have only a text', "sph", "check",
-     "all.json", "--set", 'scheme.edit.3={"operation": "assignment", "of": "age", "expression": "1"}')
+     "all.json", "--set", 'scheme.edit.3={"operation": "assignment", "of": "age", "expression": "%s1%s"}' % ("(" * 70, ")" * 70))
 
 sys.exit(1 if missed else 0)

@@ -277,16 +277,17 @@ static bool is_uniform(const struct run *r)
 static int sweep(struct run *r, size_t k, uint32_t number, struct error *e)
 {
     const struct stage *s = &r->device->stage[k];
+
+    if (has_pairs(r, s) && ((r->lists_suspect && run_device_lists(r, true, e)) ||
+                            run_device_frame(r, s->frame, e)))
+        return -1;
+    /* New lists may have brought another quantum. */
     const struct kernel_now now = {.time = r->time,
                                    .dt = r->dt,
                                    .step = r->step,
                                    .quantum = r->quantum,
                                    .uniform_h = is_uniform(r),
                                    .sweep = number};
-
-    if (has_pairs(r, s) &&
-        ((r->lists_suspect && run_device_lists(r, true, e)) || run_device_frame(r, s->frame, e)))
-        return -1;
     if (make_ready(r, s, e) ||
         kernels_launch(r->device->kernels, k, r->device->arena, r->device->list, &now, e))
         return -1;

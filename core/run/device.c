@@ -278,8 +278,8 @@ static int sweep(struct run *r, size_t k, uint32_t number, struct error *e)
 {
     const struct stage *s = &r->device->stage[k];
 
-    if (has_pairs(r, s) && ((r->lists_suspect && run_device_lists(r, true, e)) ||
-                            run_device_frame(r, s->frame, e)))
+    if (has_pairs(r, s) &&
+        ((r->lists_suspect && run_device_lists(r, true, e)) || run_device_frame(r, s->frame, e)))
         return -1;
     /* New lists may have brought another quantum. */
     const struct kernel_now now = {.time = r->time,

@@ -117,6 +117,7 @@ static void test_operations(void **state)
                 }
                 for (size_t c = 0; c < p.n_column; c++)
                     if (!a.there[c])
+                        arena_written_here(&a, (int)c);
                         OK(arena_get(&a, (int)c, &why));
                 memcpy(q.column[I].data, p.column[I].data, p.n * 4);
                 memcpy(q.column[L].data, p.column[L].data, p.n * 8);
@@ -132,6 +133,7 @@ static void test_operations(void **state)
                 for (size_t i = 0; i < p.n && i < 20; i += 3) {
                     const double old = column_get(&p.column[F], 0, p.n - 1 - i);
                     column_set(&p.column[F], 0, p.n - 1 - i, NAN);
+                    arena_written_there(&a, F);
                     OK(arena_put(&a, F, &why));
                     OK(ops_advance(ops[dim], &a, &pa, &(struct op)KICK(0.5), 0, 1, 0.1, &bad,
                                    &why));
@@ -166,6 +168,7 @@ static void step_on_device(struct motion *m, struct arena *a, double dt)
         m->run.time = begin + op[end].a * dt;
         for (size_t c = 0; c < pa->p.n_column; c++)
             if (!a->there[c])
+                arena_written_here(a, (int)c);
                 OK(arena_get(a, (int)c, &why));
         passes(m, MOMENT_EVALUATE);
         put_all(a);

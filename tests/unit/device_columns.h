@@ -102,9 +102,10 @@ static inline void put_all(struct arena *a)
 
 static inline void get_all(struct arena *a)
 {
-    for (size_t c = 0; c < a->p->n_column; c++)
+    for (size_t c = 0; c < a->p->n_column; c++) {
         arena_written_here(a, (int)c);
         OK(arena_get(a, (int)c, &why));
+    }
 }
 
 static inline void open_arena(struct arena *a, struct particles *p)

@@ -117,7 +117,6 @@ static void test_operations(void **state)
                 }
                 for (size_t c = 0; c < p.n_column; c++)
                     if (!a.there[c])
-                        arena_written_here(&a, (int)c);
                         OK(arena_get(&a, (int)c, &why));
                 memcpy(q.column[I].data, p.column[I].data, p.n * 4);
                 memcpy(q.column[L].data, p.column[L].data, p.n * 8);
@@ -168,7 +167,6 @@ static void step_on_device(struct motion *m, struct arena *a, double dt)
         m->run.time = begin + op[end].a * dt;
         for (size_t c = 0; c < pa->p.n_column; c++)
             if (!a->there[c])
-                arena_written_here(a, (int)c);
                 OK(arena_get(a, (int)c, &why));
         passes(m, MOMENT_EVALUATE);
         put_all(a);

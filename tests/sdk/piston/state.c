@@ -39,8 +39,8 @@ static const sph_prop props[] = {
 #define SPH_POINT_IN(P_)                                                                           \
     P_(scalar, weight, WEIGHT)                                                                     \
     P_(scalar, sum_rho, SUM_RHO)                                                                   \
-    P_(scalar, sum_p, SUM_P) P_(scalar, sum_cs, SUM_CS) P_(vector, lever, SUM_LEVER)               \
-        P_(scalar, volume, VOLUME)
+    P_(scalar, sum_p, SUM_P)                                                                       \
+    P_(scalar, sum_cs, SUM_CS) P_(vector, lever, SUM_LEVER) P_(scalar, volume, VOLUME)
 #define SPH_POINT_INOUT(P_)                                                                        \
     P_(scalar, rho, RHO) P_(scalar, p, P) P_(scalar, cs, CS) P_(scalar, m, M)
 #define SPH_POINT_STATE(P_) P_(acceleration, NOW_ACCELERATION)

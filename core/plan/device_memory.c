@@ -3,15 +3,15 @@
 #include "plan/device_memory.h"
 #include <math.h>
 
-/* Entries of a group's list over the true neighbours of one of its destinations: what eight of them share is
- * listed once. Measured, over kernels, schemes and precisions; by dimension. */
-static const double entries_per_neighbour[4] = {0.0, 4.0, 3.6, 4.2};
+/* Entries of the lists of eight destinations over the true neighbours of one, at a skin of a tenth: what they share
+ * is listed once. Measured with several kernels and schemes, ordered and disordered; by dimension. */
+static const double entries_per_neighbour[4] = {0.0, 3.3, 2.7, 2.6};
 /* Entries for a destination that a list has room for from the start (opencl/lists.c). */
 static const double entries_first[4] = {0.0, 8.0, 16.0, 40.0};
 /* What does not grow with the particles: slots of a slab of groups, tables, results. */
-#define FIXED 16e6
-/* Buffers of columns and of ghosts get an eighth more than is asked for. */
-#define SPARE 1.125
+#define FIXED 6.6e6
+/* Layers of ghosts are not as even as volumes are. */
+#define SPARE 1.1
 
 /* The largest smoothing length: of the particles, or of those that will be made. */
 static double largest_h(const struct plan *plan)
@@ -45,6 +45,11 @@ static double with_ghosts(const struct plan *plan)
     return all;
 }
 
+size_t plan_ghosts(const struct plan *plan, size_t array)
+{
+    return (size_t)((double)plan_count(plan, array) * SPARE * (with_ghosts(plan) - 1.0));
+}
+
 static void keep_largest(struct device_memory *m, double bytes, const char *of)
 {
     if (bytes > m->largest) {
@@ -60,7 +65,9 @@ static double column_bytes(const struct plan_array *a, bool wide)
     for (size_t c = 0; c < a->p.n_column; c++) {
         const struct column *column = &a->p.column[c];
         const bool is_wide = column->size == 8 && !a->in_floats[c];
-        bytes += is_wide && wide ? 8.0 * column->ncomp : !is_wide && !wide ? 4.0 * column->ncomp : 0;
+        bytes += is_wide && wide     ? 8.0 * column->ncomp
+                 : !is_wide && !wide ? 4.0 * column->ncomp
+                                     : 0;
         bytes += !wide && (a->mirrored[c] || column->mirror) ? 4.0 * column->ncomp : 0.0;
     }
     return bytes;
@@ -71,45 +78,53 @@ static double list_bytes(const struct plan *plan, const struct plan_list *l, dou
     const double n = (double)plan_count(plan, l->dst);
     const double of = (double)plan_count(plan, l->src) / fmax(all, 1.0);
     const double entries = plan_neighbours(plan, l->dst) * of * entries_per_neighbour[plan->dim] *
-                           pow(1.0 + plan->skin, plan->dim) / SPH_LANES;
+                           pow((1.0 + plan->skin) / 1.1, plan->dim) / SPH_LANES;
     return 4.0 * n * fmax(entries, entries_first[plan->dim]);
+}
+
+/* Of the search for a particle: boxes, cells, an order. Where it is not the particles' own: a copy of places and h,
+ * keys and indices, both twice as they are sorted. */
+static double search_bytes(const struct plan *plan)
+{
+    const double dim = plan->dim, own = 2.0 * dim + 1.0 + 20.0;
+    return !plan->manager || plan->manager == neighbour_manager_default()
+               ? own
+               : own + 8.0 * (dim + 1.0) + 24.0;
 }
 
 struct device_memory plan_device_memory(const struct plan *plan)
 {
     struct device_memory m = {.search = FIXED};
-    const double ghosts = with_ghosts(plan), dim = plan->dim;
-    double all = 0.0, most = 0.0, twice = 0.0;
+    double all = 0.0, most = 0.0;
     for (size_t a = 0; a < plan->n_array; a++) {
-        const double n = (double)plan_count(plan, a), room = ghosts > 1.0 ? n * ghosts * SPARE : n;
+        const double n = (double)plan_count(plan, a), ghosts = (double)plan_ghosts(plan, a);
         const double wide = column_bytes(&plan->array[a], true),
                      narrow = column_bytes(&plan->array[a], false);
         all += n;
-        most = fmax(most, n * ghosts);
-        m.columns += (wide + narrow + (ghosts > 1.0 ? 5.0 : 0.0)) * room;
-        twice = fmax(twice, ghosts > 1.0 ? (wide + narrow) * room : 0.0);
-        keep_largest(&m, wide * room, plan->array[a].p.name);
-        keep_largest(&m, narrow * room, plan->array[a].p.name);
+        most = fmax(most, n + ghosts);
+        m.columns += (wide + narrow) * (n + ghosts) + 5.0 * ghosts;
+        keep_largest(&m, wide * (n + ghosts), plan->array[a].p.name);
+        keep_largest(&m, narrow * (n + ghosts), plan->array[a].p.name);
         /* Places at which lists were made. */
-        m.search += 8.0 * (dim + 1.0) * n * (double)plan->n_frame;
+        m.search += 8.0 * (plan->dim + 1) * n * (double)plan->n_frame;
     }
     for (size_t k = 0; k < plan->n_list; k++) {
         const double bytes = list_bytes(plan, &plan->list[k], all);
         m.lists += bytes + (double)plan_count(plan, plan->list[k].dst);
         keep_largest(&m, bytes, "neighbour lists");
     }
-    /* Boxes; a copy in the search's order, keys and their order, twice as they are sorted; cells. */
-    m.search += plan->n_list ? most * (8.0 * (2.0 * dim + 1.0) + 8.0 * (dim + 1.0) + 40.0) : 0.0;
-    m.total = m.columns + m.search + fmax(m.lists, twice);
+    m.search += plan->n_list ? most * search_bytes(plan) : 0.0;
+    m.total = m.columns + m.search + m.lists;
     return m;
 }
 
 void plan_print_device_memory(const struct plan *plan, FILE *out)
 {
     const struct device_memory m = plan_device_memory(plan);
-    fprintf(out,
-            "device memory: about %.3g MB: columns %.3g, neighbour lists %.3g, search %.3g; the largest "
-            "buffer %.3g (%s)\n",
-            1e-6 * m.total, 1e-6 * m.columns, 1e-6 * m.lists, 1e-6 * m.search, 1e-6 * m.largest,
-            m.largest_of ? m.largest_of : "none");
+    fprintf(
+        out,
+        "device memory: about %.3g MB: columns %.3g, neighbour lists %.3g, search %.3g; the largest "
+        "buffer %.3g (%s)\n",
+        1e-6 * m.total, 1e-6 * m.columns, 1e-6 * m.lists, 1e-6 * m.search, 1e-6 * m.largest,
+        m.largest_of ? m.largest_of : "none");
 }

@@ -230,8 +230,8 @@ static double expected_pairs(const struct plan *plan)
     for (size_t i = 0; i < plan->n_pass; i++) {
         const struct pass *p = &plan->pass[i];
         if (p->shape == SPH_PAIR && p->moment == MOMENT_EVALUATE)
-            pairs += (double)plan_count(plan, p->dst.array) *
-                     plan_neighbours(plan, p->dst.array) * (p->max_sweeps ? 2.0 : 1.0);
+            pairs += (double)plan_count(plan, p->dst.array) * plan_neighbours(plan, p->dst.array) *
+                     (p->max_sweeps ? 2.0 : 1.0);
     }
     return pairs * plan->integrator->evaluations;
 }

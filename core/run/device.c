@@ -3,6 +3,7 @@
  * numbers. */
 #include "run/device.h"
 
+#include "plan/device_memory.h"
 #include "run/chunks.h"
 #include "run/watch.h"
 
@@ -62,13 +63,13 @@ int run_device_open(struct run *r, struct error *e)
     if (!d)
         return error_memory(e, "the run on a device", sizeof(*d));
     if (device_open_part(&d->d, plan->scene->device.number, (unsigned)r->threads, e) ||
-        make_tables(r, e) ||
-        make_stages(r, e) || ops_open(&d->ops, d->d, plan->dim, e) ||
+        make_tables(r, e) || make_stages(r, e) || ops_open(&d->ops, d->d, plan->dim, e) ||
         look_open(&d->look, d->d, plan->dim, e) ||
         device_search_open(&d->search, d->d, plan->dim, plan->manager, e))
         return -1;
     for (size_t a = 0; a < plan->n_array; a++)
-        if (arena_init(&d->arena[a], d->d, &plan->array[a].p, e))
+        if (arena_init(&d->arena[a], d->d, &plan->array[a].p, e) ||
+            (plan->array[a].p.n && arena_room(&d->arena[a], plan_ghosts(plan, a), e)))
             return -1;
     return kernels_make(&d->kernels, d->d, plan, d->arena, d->stage, d->first[MOMENT_COUNT], e);
 }
@@ -255,8 +256,8 @@ static int sweep(struct run *r, size_t k, uint32_t number, struct error *e)
 {
     const struct stage *s = &r->device->stage[k];
 
-    if (has_pairs(r, s) && ((r->lists_suspect && run_device_lists(r, true, e)) ||
-                            run_device_frame(r, s->frame, e)))
+    if (has_pairs(r, s) &&
+        ((r->lists_suspect && run_device_lists(r, true, e)) || run_device_frame(r, s->frame, e)))
         return -1;
     /* New lists may have brought another quantum. */
     const struct kernel_now now = {.time = r->time,

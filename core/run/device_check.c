@@ -11,12 +11,13 @@ static int check_memory(const struct plan *plan, const struct device_facts *f, s
 
     if (m.total <= memory && m.largest <= largest)
         return 0;
-    return error_set(e, EXIT_RUN,
-                     "the scene needs about %.3g MB on device \"%s\", which has %.3g MB, and %.3g MB in one "
-                     "buffer (%s), which may have %.3g MB: take fewer particles, another device or --device "
-                     "cpu",
-                     1e-6 * m.total, f->name, 1e-6 * memory, 1e-6 * m.largest,
-                     m.largest_of ? m.largest_of : "none", 1e-6 * largest);
+    return error_set(
+        e, EXIT_RUN,
+        "the scene needs about %.3g MB on device \"%s\", which has %.3g MB, and %.3g MB in one "
+        "buffer (%s), which may have %.3g MB: take fewer particles, another device or --device "
+        "cpu",
+        1e-6 * m.total, f->name, 1e-6 * memory, 1e-6 * m.largest,
+        m.largest_of ? m.largest_of : "none", 1e-6 * largest);
 }
 
 int run_check(const struct plan *plan, uint32_t path, bool audit, struct error *e)
@@ -34,10 +35,11 @@ int run_check(const struct plan *plan, uint32_t path, bool audit, struct error *
     if (device_look(plan->scene->device.number, &facts, e))
         return -1;
     if (!facts.fp64)
-        return error_set(e, EXIT_USAGE,
-                         "device \"%s\" has no double precision, which the state is kept in: take another "
-                         "(`sph info --devices'), or --device cpu",
-                         facts.name);
+        return error_set(
+            e, EXIT_USAGE,
+            "device \"%s\" has no double precision, which the state is kept in: take another "
+            "(`sph info --devices'), or --device cpu",
+            facts.name);
     return check_memory(plan, &facts, e);
 }
 

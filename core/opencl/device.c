@@ -298,12 +298,12 @@ static int check_room(const struct device *d, size_t bytes, const char *what, st
 
     if (bytes > f->largest)
         return error_set(e, EXIT_RUN,
-                         "device \"%s\" has no room for the %s: %zu bytes, where one buffer has at "
+                         "device \"%s\" has no room for %s: %zu bytes, where one buffer has at "
                          "most %llu",
                          f->name, what, bytes, (unsigned long long)f->largest);
     if (bytes > f->memory - (d->bytes < f->memory ? d->bytes : f->memory))
         return error_set(e, EXIT_RUN,
-                         "device \"%s\" has no room for the %s: %zu bytes beside the %zu in use, "
+                         "device \"%s\" has no room for %s: %zu bytes beside the %zu in use, "
                          "of %llu",
                          f->name, what, bytes, d->bytes, (unsigned long long)f->memory);
     return 0;
@@ -351,7 +351,7 @@ int device_reserve(struct device *d, struct device_buffer *b, size_t bytes, cons
     d->failed = d->failed || status != CL_SUCCESS;
     if (status != CL_SUCCESS)
         return error_set(e, EXIT_RUN,
-                         "device \"%s\" gives no room for the %s, %zu bytes beside the %zu in use, "
+                         "device \"%s\" gives no room for %s, %zu bytes beside the %zu in use, "
                          "of %llu: %s (%d)",
                          d->facts.name, what, bytes, d->bytes, (unsigned long long)d->facts.memory,
                          device_word(status), (int)status);

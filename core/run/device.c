@@ -84,10 +84,10 @@ void run_device_close(struct run *r)
     kernels_free(d->kernels);
     for (size_t k = 0; d->list && k < r->plan->n_list; k++)
         device_list_release(d->d, &d->list[k]);
-    for (size_t k = 0; d->skin && k < n * r->plan->n_frame; k++)
+    for (size_t k = 0; d->skin && d->ops && k < n * r->plan->n_frame; k++)
         ops_skin_release(d->ops, &d->skin[k]);
     for (size_t a = 0; a < n; a++) {
-        if (d->ghosts)
+        if (d->ghosts && d->ops)
             ops_ghosts_release(d->ops, &d->ghosts[a]);
         if (d->arena)
             arena_fini(&d->arena[a]);

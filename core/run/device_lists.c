@@ -84,7 +84,8 @@ static int host_says(struct run *r, struct error *e)
 {
     struct run_device *device = r->device;
     struct error why = {0};
-    int status = run_device_fetch(r, &why);
+    bool lost;
+    int status = run_device_failed(r, &lost) ? -1 : run_device_fetch(r, &why);
 
     if (status)
         return -1;
@@ -278,7 +279,8 @@ static int make_ghosts(struct run *r, struct error *e)
         struct run_device *d = r->device;
         if (ops_ghosts_make(d->ops, &d->arena[a], &d->ghosts[a], &r->plan->scene->box, margin, e)) {
             struct error why = {0};
-            if (places_there(r, &why) == 0)
+            bool lost;
+            if (!run_device_failed(r, &lost) && places_there(r, &why) == 0)
                 watch_no_ghosts(r, e);
             return -1;
         }

@@ -7,7 +7,6 @@
 #include "run/watch.h"
 
 #include <math.h>
-#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -90,8 +89,9 @@ int run_device_open(struct run *r, struct error *e)
     for (size_t a = 0; a < plan->n_array; a++)
         if (arena_init(&d->arena[a], d->d, &plan->array[a].p, e))
             return -1;
-    return check_memory(r, e) || kernels_make(&d->kernels, d->d, plan, d->arena, d->stage,
-                                              d->first[MOMENT_COUNT], e)
+    return run_device_cost_open(r, e) || check_memory(r, e) ||
+                   kernels_make(&d->kernels, d->d, plan, d->arena, d->stage, d->first[MOMENT_COUNT],
+                                e)
                ? -1
                : 0;
 }
@@ -104,6 +104,7 @@ void run_device_close(struct run *r)
     if (!d)
         return;
     kernels_free(d->kernels);
+    run_device_cost_close(r);
     for (size_t k = 0; d->list && k < r->plan->n_list; k++)
         device_list_release(d->d, &d->list[k]);
     for (size_t k = 0; d->skin && k < n * r->plan->n_frame; k++)
@@ -242,22 +243,6 @@ static void mark_written(struct run *r, const struct stage *s)
     }
 }
 
-/* `part` of the destinations took part. */
-static void count_pairs(struct run *r, const struct stage *s, double part)
-{
-    for (size_t k = 0; k < s->n; k++) {
-        struct pass *p = &r->plan->pass[s->pass[k]];
-        p->sweeps++;
-        for (size_t q = 0; p->shape == SPH_PAIR && q < p->n_src; q++) {
-            const struct device_list *list = &r->device->list[p->list[q]];
-            const uint64_t pairs =
-                (uint64_t)(part * r->device->share[p->list[q]] * (double)list->n_entry);
-            p->pairs += pairs;
-            r->cost.pairs += pairs;
-        }
-    }
-}
-
 static bool has_pairs(const struct run *r, const struct stage *s)
 {
     return s->n_head < s->n && r->plan->pass[s->pass[s->n_head]].shape == SPH_PAIR;
@@ -278,8 +263,8 @@ static int sweep(struct run *r, size_t k, uint32_t number, struct error *e)
 {
     const struct stage *s = &r->device->stage[k];
 
-    if (has_pairs(r, s) && ((r->lists_suspect && run_device_lists(r, true, e)) ||
-                            run_device_frame(r, s->frame, e)))
+    if (has_pairs(r, s) &&
+        ((r->lists_suspect && run_device_lists(r, true, e)) || run_device_frame(r, s->frame, e)))
         return -1;
     /* New lists may have brought another quantum. */
     const struct kernel_now now = {.time = r->time,
@@ -288,11 +273,15 @@ static int sweep(struct run *r, size_t k, uint32_t number, struct error *e)
                                    .quantum = r->quantum,
                                    .uniform_h = is_uniform(r),
                                    .sweep = number};
-    if (make_ready(r, s, e) ||
-        kernels_launch(r->device->kernels, k, r->device->arena, r->device->list, &now, e))
+    if (make_ready(r, s, e))
         return -1;
+    const size_t before = device_span(r->device->d, SPAN_STAGES + 2 * k);
+    const int status =
+        kernels_launch(r->device->kernels, k, r->device->arena, r->device->list, &now, e);
+    device_span(r->device->d, before);
+    r->device->work[k].sweeps++;
     mark_written(r, s);
-    return 0;
+    return status;
 }
 
 /* Sweeps until none of its destinations asks for another. */
@@ -307,7 +296,7 @@ static int iterate(struct run *r, size_t k, struct error *e)
     for (uint32_t number = 0; busy > 0; number++) {
         if (sweep(r, k, number, e))
             return -1;
-        count_pairs(r, s, (double)busy / (double)all);
+        run_device_count(r, k, (double)busy / (double)all);
         if (look_groups(r->device->look, arena, p->unfinished, &busy, e))
             return -1;
         if (number + 1 >= p->max_sweeps) {
@@ -378,19 +367,16 @@ static int prepare(struct run *r, const struct stage *s, struct error *e)
 static int run_stage(struct run *r, size_t k, struct error *e)
 {
     const struct stage *s = &r->device->stage[k];
-    const double begin = omp_get_wtime(), other = r->cost.neighbour;
+    const size_t before = device_span(r->device->d, SPAN_STAGES + 2 * k + 1);
     int status = prepare(r, s, e);
 
     if (!status && r->device->arena[s->array].n > 0) {
         status = s->iterates ? iterate(r, k, e) : sweep(r, k, 0, e);
         if (!status && !s->iterates)
-            count_pairs(r, s, 1.0);
+            run_device_count(r, k, 1.0);
     }
-    if (!status)
-        status = begin_reductions(r, s, e);
-    /* Of a stage the first pass has the time: what each takes by itself nobody can tell. */
-    r->plan->pass[s->pass[0]].seconds += omp_get_wtime() - begin - (r->cost.neighbour - other);
-    return status;
+    device_span(r->device->d, before);
+    return status ? status : begin_reductions(r, s, e);
 }
 
 /* -- What went wrong -------- */
@@ -549,16 +535,16 @@ static int advance_array(struct run *r, size_t array, size_t from, size_t to, st
 
 int run_device_advance(struct run *r, size_t from, size_t to, struct error *e)
 {
-    const double begin = omp_get_wtime();
+    const size_t before = device_span(r->device->d, SPAN_INTEGRATE);
+    int status = 0;
 
-    for (size_t a = 0; a < r->plan->n_array; a++)
-        if (r->plan->array[a].n_rate && r->device->arena[a].n > 0 &&
-            advance_array(r, a, from, to, e))
-            return -1;
+    for (size_t a = 0; !status && a < r->plan->n_array; a++)
+        if (r->plan->array[a].n_rate && r->device->arena[a].n > 0)
+            status = advance_array(r, a, from, to, e);
+    device_span(r->device->d, before);
     r->left = 0;
     r->lists_suspect = true;
-    r->cost.integrate += omp_get_wtime() - begin;
-    return 0;
+    return status;
 }
 
 /* -- Totals -------- */

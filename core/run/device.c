@@ -469,11 +469,7 @@ static int failed_bodies(struct run *r, struct error *e)
 {
     bool failed = false;
 
-    if (kernels_failed(r->device->kernels, &failed, e) == 0)
-        return 0;
-    if (failed) /* a sentence of the plugin's: where and when is the host's to say */
-        error_prefix(e, "step %llu, t = %g", (unsigned long long)r->step, r->time);
-    return -1;
+    return kernels_failed(r->device->kernels, &failed, e) || failed ? -1 : 0;
 }
 
 int run_device_passes(struct run *r, enum moment moment, struct error *e)

@@ -1,5 +1,5 @@
-/* test_opencl_advance.c -- integrators on a device, against their definition and against whole steps of the host.
- * Skips itself where there is no device. */
+/* test_opencl_advance.c -- integrators on a device, against their definition and against whole
+ * steps of the host. Skips itself where there is no device. */
 #include "config.h"
 
 #include <setjmp.h>

@@ -1,5 +1,5 @@
-/* test_opencl_ops.c -- columns on a device against the same on the host: transfers, mirrors, order, reductions, how
- * far particles have moved. Skips itself where there is no device. */
+/* test_opencl_ops.c -- columns on a device against the same on the host: transfers, mirrors, order,
+ * reductions, how far particles have moved. Skips itself where there is no device. */
 #include "config.h"
 
 #include <setjmp.h>

@@ -291,10 +291,11 @@ if part("several"):
 if part("threads"):
     large = changed(SCENE, output={"picture": False})
     large["particles"]["fluid"]["fill"]["spacing"] = 0.005
+    large["time"]["steps"] = 300
     states = []
     for threads in (1, 2):
         before, begun = os.times(), time.time()
-        result = scenes.run(large, "--steps", "300", *ON, "--threads", str(threads))
+        result = scenes.run(large, *ON, "--threads", str(threads))
         after, wall = os.times(), time.time() - begun
         expect(f"{threads} threads", result.code == 0, result.stderr)
         used = (after.children_user + after.children_system - before.children_user - before.children_system) / wall

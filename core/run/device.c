@@ -427,7 +427,7 @@ static int find_wrong(struct run *r, enum moment moment, struct error *e)
     for (size_t i = 0; i < r->plan->n_pass; i++) {
         const struct pass *p = &r->plan->pass[i];
         r->watch->done = i + 1;
-        if (p->moment == moment && ((r->look && finite_pass(r, p, e)) || watch_pass(r, p, e)))
+        if (p->moment == moment && ((r->look && finite_pass_late(r, p, e)) || watch_pass(r, p, e)))
             return -1;
     }
     r->suspect = true;

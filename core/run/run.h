@@ -165,6 +165,8 @@ int run_look(struct run *r, struct error *e);
 /* finite.c: each fails (EXIT_RUN) naming pass, property, particle and place. What a pass has
  * just written (working storage aside, which may hold anything) is a number. */
 int finite_pass(const struct run *r, const struct pass *p, struct error *e);
+/* ... after all passes of its moment. */
+int finite_pass_late(const struct run *r, const struct pass *p, struct error *e);
 /* After an evaluation: all rates are finite. */
 int finite_rates(struct run *r, struct error *e);
 /* When something else is no number: the first pass of which something is. 0: there is none. */

@@ -300,6 +300,8 @@ static int begin_reductions(struct run *r, const struct stage *s, struct error *
             const bool weighted = use == SPH_USE_INTERNAL || use == SPH_USE_POTENTIAL;
             if (q->pass != s->pass[k] || d->slot[i] != NO_SLOT)
                 continue;
+            if (d->n_slot == OPS_RESULTS / 2 && run_device_collect(r, e))
+                return -1;
             if (weighted && arena_put(&d->arena[q->array], a->mass, e))
                 return -1;
             if (ops_reduce_begin(d->ops, &d->arena[q->array], q->column, 0, weighted ? a->mass : -1,

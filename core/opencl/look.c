@@ -3,6 +3,8 @@
 
 #include "opencl/look.h"
 
+#include "opencl/embed.h"
+
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
@@ -12,16 +14,8 @@
 #define BLOCK 4096u /* particles; as run/totals.c */
 #define SUMS 10u    /* as look.cl */
 
-__asm__(".pushsection .rodata\n"
-        ".globl look_text\n"
-        ".hidden look_text\n"
-        ".type look_text, %object\n"
-        "look_text:\n"
-        ".incbin \"opencl/look.cl\"\n"
-        ".byte 0\n"
-        ".size look_text, . - look_text\n"
-        ".popsection\n");
-extern __attribute__((visibility("hidden"))) const char look_text[];
+EMBED("look_text", "opencl/look.cl");
+extern EMBEDDED look_text[];
 
 /* As in look.cl. */
 struct entry {

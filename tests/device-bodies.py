@@ -1,4 +1,4 @@
-"""Bodies of pair functions on an OpenCL device: what sph-plugin-check says of them. Ours and one that uses every
+"""Bodies of pairs and of points on an OpenCL device: what sph-plugin-check says of them. Ours and those that use every
 word give the native numbers; each whose text or lists are not those of the native loop is caught; what does
 not compile is reported with file and line; and the text that is embedded is that of the file."""
 import json
@@ -11,21 +11,54 @@ SOURCE = os.environ["top_srcdir"]
 CHECK = os.path.join(BUILD, "sph-plugin-check")
 WRONG = os.path.join(BUILD, "tests/check/.libs/wrong_device.so")
 
-WCSPH = {name: ("ok", f'"{file}.body.h" gives the native numbers in 1, 2, 3 dimensions')
-         for name, file in (("wcsph-continuity", "continuity"), ("wcsph-momentum", "momentum"),
-                            ("wcsph-rates", "continuity"))}
-OURS = {"gsph-density": ("ok", '"density.body.h" gives the native numbers in 1, 2, 3 dimensions'),
-        "gsph-gradients": ("ok", '"gradients.body.h" gives the native numbers in 1, 2, 3 dimensions'),
-        "gsph-rates": ("ok", '"rates.body.h" gives the native numbers in 1, 2, 3 dimensions')}
+GIVES = ' gives the native numbers in 1, 2, 3 dimensions'
+
+
+def pair(file):
+    return ("ok", f'"{file}.body.h"{GIVES}')
+
+
+def point(file, part):
+    return ("ok", f'"{file}.body.h" of {part}{GIVES}')
+
+
+# What is said of each item, in order.
+OURS = {
+    "gsph": {"gsph-density": [pair("density"), point("update", "after")],
+             "gsph-gradients": [pair("gradients"), point("correct", "after")],
+             "gsph-rates": [pair("rates"), point("finish", "after")]},
+    "wcsph": {"wcsph-pressure": [point("pressure", "run")],
+              "wcsph-continuity": [pair("continuity")],
+              "wcsph-momentum": [pair("momentum"), point("finish", "after")],
+              "wcsph-rates": [pair("continuity"), point("finish", "after")]},
+    "barotropic": {"barotropic-density": [pair("density")],
+                   "barotropic-continuity": [pair("continuity")],
+                   "barotropic-pressure": [point("pressure", "run")],
+                   "barotropic-energy": [point("energy", "run")],
+                   "barotropic-momentum": [pair("momentum"), point("finish", "after")]},
+    "eos": {"ideal-gas": [point("ideal_gas", "run")], "linear": [point("linear", "run")],
+            "tait": [point("tait", "run")]},
+    "forces": {"body-force": [point("uniform", "run")], "central-force": [point("central", "run")]},
+    "diagnostics": {"nearest": [pair("nearest"), point("finish", "after")]},
+}
 DIFFER = 'the device body "device.body.h" and the native one differ in '
-THEIRS = {"every-word": ("ok", '"device.body.h" gives the native numbers in 1, 2, 3 dimensions'),
-          "with-self": ("ok", '"device.body.h" gives the native numbers in 1, 2, 3 dimensions'),
-          "other-factor": ("fail", DIFFER + "2 dimensions, 1000 particles, with a kernel of powers: mass of particle 0"),
-          "other-reach": ("fail", DIFFER + "3 dimensions, 1000 particles, with a kernel of powers: edges of"),
-          "without-self": ("fail", DIFFER + "1 dimension, 1000 particles, with a kernel of powers: mass of"),
-          "swapped-values": ("fail", DIFFER + "2 dimensions"),
-          "no-maximum": ("fail", DIFFER + "2 dimensions"),
-          "no-such-word": ("fail", 'its device body "broken.body.h" does not compile on ')}
+ALONE = 'the device body "point.body.h" of run and the native one differ in '
+THEIRS = {
+    "every-word": [pair("device")],
+    "with-self": [pair("device")],
+    "other-factor": [("fail", DIFFER + "2 dimensions, 1000 particles, with a kernel of powers: mass of particle 0")],
+    "other-reach": [("fail", DIFFER + "3 dimensions, 1000 particles, with a kernel of powers: edges of")],
+    "without-self": [("fail", DIFFER + "1 dimension, 1000 particles, with a kernel of powers: mass of")],
+    "swapped-values": [("fail", DIFFER + "2 dimensions")],
+    "no-maximum": [("fail", DIFFER + "2 dimensions")],
+    "no-such-word": [("fail", 'its device body "broken.body.h" does not compile on ')],
+    "alone-every-word": [point("point", "run")],
+    "alone-other-factor": [("fail", ALONE + "2 dimensions, 1000 particles: energy of particle 0")],
+    "alone-swapped-values": [("fail", ALONE + "3 dimensions, 1000 particles: pull of particle 0")],
+    "alone-failing": [("fail", 'the device body "point.body.h" of run fails where the native one does not: '
+                               "wrong-device: nothing is long")],
+    "alone-no-such-word": [("fail", "broken.body.h:2: does not compile on ")],
+}
 
 missed = 0
 
@@ -49,20 +82,22 @@ def verdicts(plugin):
 
 def compared():
     """Is there a device?"""
-    for plugin, wanted in (("gsph", OURS), ("wcsph", WCSPH), (WRONG, THEIRS)):
+    for plugin, wanted in (*OURS.items(), (WRONG, THEIRS)):
         found = verdicts(plugin)
         expect(f"items of {plugin}", set(found) == set(wanted), sorted(found))
-        for item, (verdict, words) in wanted.items():
+        for item, lines in wanted.items():
             said = found.get(item, [])
-            if len(said) == 1 and "is not compared with the native one: " in said[0][1]:
+            if said and "is not compared with the native one: " in said[0][1]:
                 expect(item, said[0][0] == "note", said)
                 print(said[0][1])
                 return False
-            expect(item, len(said) == 1 and said[0][0] == verdict and words in said[0][1], said)
-            for text in said if item == "no-such-word" else []:
-                expect("file and line", "broken.body.h:3" in text[1] and "no_such_word" in text[1], text)
-            for text in said if verdict == "ok" else []:
-                print(f"{item}: {text[1][text[1].index('apart'):]}")
+            expect(item, len(said) == len(lines), said)
+            for (verdict, text), (wanted_verdict, words) in zip(said, lines):
+                expect(item, verdict == wanted_verdict and words in text, said)
+                if "no-such-word" in item:
+                    expect("file and line", f"broken.body.h:{2 if item.startswith('alone') else 3}" in text and "no_such_word" in text, text)
+                if verdict == "ok":
+                    print(f"{item}: {text[text.index('apart'):]}")
     return True
 
 
@@ -79,6 +114,7 @@ embedded(os.path.join(BUILD, "plugins/.libs/gsph.so"), "plugins/gsph/density.bod
          "plugins/gsph/gradients.body.h", "plugins/gsph/rates.body.h", "plugins/gsph/rates.macros.h")
 embedded(os.path.join(BUILD, "plugins/.libs/wcsph.so"), "plugins/wcsph/continuity.body.h",
          "plugins/wcsph/momentum.body.h")
-embedded(WRONG, "tests/check/device.body.h", "tests/check/device.macros.h")
+embedded(os.path.join(BUILD, "plugins/.libs/eos.so"), "plugins/eos/tait.body.h")
+embedded(WRONG, "tests/check/device.body.h", "tests/check/device.macros.h", "tests/check/point.body.h")
 there = compared()
 sys.exit(1 if missed else 0 if there else 77)

@@ -39,7 +39,8 @@ assert plugins, "no plugin"
 for item in info["items"]:
     assert item["plugin"] in plugins and item["doc"] and item["dimensions"], item
     assert item["id"].endswith("/" + item["name"]) and item["version"] and item["file"], item
-    assert item["kind"] != "function" or "cpu" in item["backends"], item
+    if item["kind"] in ("function", "equation of state"):
+        assert item["backends"] == ["cpu", "opencl"], item
     for parameter in item["parameters"]:
         assert {"name", "unit", "doc", "default"} <= parameter.keys(), parameter
     for prop in item["properties"]:

@@ -260,15 +260,13 @@ static int compare_dim(struct trial *t, size_t device, int dim, struct error *e)
     return status;
 }
 
-void check_device(const struct subject *s)
+static void check_pairs(const struct subject *s)
 {
     struct trial t = {.subject = s, .function = entry_function(s->entry)};
     struct error e = {0};
     char dims[64];
     size_t device;
 
-    if (t.function->shape != SPH_PAIR)
-        return;
     if (!t.function->device) {
         say(s, VERDICT_NOTE, "no device body");
         return;
@@ -293,4 +291,11 @@ void check_device(const struct subject *s)
         "and of a table: apart by at most %.1e of the sum of absolute terms (%s; bar %.1e)",
         t.function->device->file, subject_dims(s, dims, sizeof(dims)), t.device_name,
         DBL_EPSILON * t.worst, t.worst_name ? t.worst_name : "no accumulator", DBL_EPSILON * BAR);
+}
+
+void check_device(const struct subject *s)
+{
+    if (s->entry->kind == KIND_FUNCTION && entry_function(s->entry)->shape == SPH_PAIR)
+        check_pairs(s);
+    check_points(s);
 }

@@ -31,6 +31,9 @@ void check_conservation(const struct subject *s); /* check_conservation.c */
 void check_recipe(const struct subject *s);       /* check_recipe.c */
 void check_paths(const struct subject *s);        /* check_paths.c */
 void check_device(const struct subject *s);       /* check_device.c */
+/* The part of check_device that is for what destinations do alone: `run` of point functions and
+ * equations of state, `before` and `after`; in check_points.c. */
+void check_points(const struct subject *s);
 
 /* table.c: what of an item is called: the function, or run and inverse. At most 2; returns how
  * many. */

@@ -27,8 +27,8 @@ const struct check check_table[] = {
      CHECK_KIND(KIND_SCHEME) | CHECK_KIND(KIND_BOUNDARY), check_recipe, false, 1},
     {"paths", "the plain loop, vectors of every instruction set, and floats give the same",
      CHECK_KIND(KIND_FUNCTION), check_paths, true, PATHS_PATIENCE},
-    {"device", "native and device bodies", CHECK_KIND(KIND_FUNCTION), check_device, true,
-     DEVICE_PATIENCE},
+    {"device", "native and device bodies", CHECK_KIND(KIND_FUNCTION) | CHECK_KIND(KIND_EOS),
+     check_device, true, DEVICE_PATIENCE},
 };
 const size_t n_check = sizeof(check_table) / sizeof(check_table[0]);
 

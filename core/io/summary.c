@@ -213,6 +213,8 @@ static void put_passes(struct maker *m, cJSON *cost, const struct summary *s)
         put_number(m, passes, s->pass[i].name, seconds);
         put_count(m, counts, s->pass[i].name, pairs);
     }
+    if (s->shared)
+        put(m, cost, "pass_in", cJSON_Duplicate(s->shared, 1));
 }
 
 static void put_memory(struct maker *m, cJSON *cost, const struct summary_memory *memory)
@@ -342,6 +344,8 @@ cJSON *summary_json(const struct summary *s)
     put_profiles(&m, root, s);
     put_conservation(&m, root, s);
     put_cost(&m, root, s);
+    if (s->device)
+        put(&m, root, "device", cJSON_Duplicate(s->device, 1));
     put_plan(&m, root, s);
     put_versions(&m, root);
     put_plugins(&m, root, s);

@@ -93,7 +93,9 @@ struct summary {
     struct summary_cost cost;
     const struct summary_pass *pass;
     size_t n_pass;
-    cJSON *plan; /* owned by the caller; duplicated; NULL: an empty one */
+    cJSON *plan;   /* owned by the caller; duplicated; NULL: an empty one */
+    cJSON *device; /* likewise; what a run on a device cost there; NULL: it was on the processor */
+    cJSON *shared; /* likewise: passes of which the time stands with another one; NULL: none */
     const struct summary_plugin *plugin;
     size_t n_plugin;
     int threads, ranks;

@@ -156,6 +156,31 @@ static void print_cost(const struct summary *s, FILE *out, int width)
     }
 }
 
+static double member(const cJSON *object, const char *name)
+{
+    const cJSON *value = cJSON_GetObjectItemCaseSensitive(object, name);
+    return cJSON_IsNumber(value) ? value->valuedouble : (double)NAN;
+}
+
+/* Where it ran, and what of that device its sweeps reach. */
+static void print_device(const struct summary *s, FILE *out, int width)
+{
+    const cJSON *sweeps = cJSON_GetObjectItemCaseSensitive(s->device, "sweeps");
+    const char *name = cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(s->device, "name"));
+    const double pair = member(sweeps, "ns_per_pair");
+    label(out, width, "device", "");
+    fprintf(out, "%.*s (opencl:%.0f)\n", WIDTH - width - 14, name ? name : "",
+            member(s->device, "number"));
+    label(out, width, "", "");
+    fprintf(out, "%.3g s of %.3g busy, programs: %.3g s\n", member(s->device, "busy_s"),
+            s->cost.loop, member(s->device, "build_s"));
+    if (isnan(pair))
+        return;
+    label(out, width, "sweeps", "");
+    fprintf(out, "%.3g ns per pair: %.0f %% of the arithmetic, %.0f %% of the bandwidth\n", pair,
+            100 * member(sweeps, "share_of_rate"), 100 * member(sweeps, "share_of_bandwidth"));
+}
+
 void summary_table(const struct summary *s, FILE *out)
 {
     const int width = label_width(s);
@@ -184,6 +209,8 @@ void summary_table(const struct summary *s, FILE *out)
     print_drift(s, out, width);
     print_watch(s, out, width);
     print_cost(s, out, width);
+    if (s->device)
+        print_device(s, out, width);
     if (s->picture) {
         label(out, width, "picture", "");
         fprintf(out, "%s\n", s->picture);

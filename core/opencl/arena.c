@@ -38,10 +38,10 @@ static void place_columns(struct arena *a)
     }
 }
 
-int arena_init(struct arena *a, struct device *d, struct particles *p, struct error *e)
+int arena_plan(struct arena *a, struct particles *p, struct error *e)
 {
     const size_t n = p->n_column + 1;
-    *a = (struct arena){.d = d, .p = p};
+    *a = (struct arena){.p = p};
     for (size_t k = 0; k < p->n_column; k++)
         if (p->column[k].low)
             return error_set(e, EXIT_RUN,
@@ -56,6 +56,14 @@ int arena_init(struct arena *a, struct device *d, struct particles *p, struct er
     }
     memset(a->there, true, n * sizeof *a->there);
     place_columns(a);
+    return 0;
+}
+
+int arena_init(struct arena *a, struct device *d, struct particles *p, struct error *e)
+{
+    if (arena_plan(a, p, e))
+        return -1;
+    a->d = d;
     if (arena_resize(a, p->n, 0, e)) {
         arena_fini(a);
         return -1;

@@ -31,6 +31,8 @@ struct arena {
 /* Places for all columns as they are held on the host now (particles_hold, particles_mirror: before). Nothing is
  * copied yet: all is there, nothing here. */
 int arena_init(struct arena *a, struct device *d, struct particles *p, struct error *e);
+/* The places alone, without a device: for texts. */
+int arena_plan(struct arena *a, struct particles *p, struct error *e);
 void arena_fini(struct arena *a);
 /* Bytes that it will need on the device for so many particles. */
 size_t arena_bytes(const struct arena *a, size_t n);

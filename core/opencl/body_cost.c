@@ -1,5 +1,6 @@
 /* opencl/body_cost.c -- counts operations in a body's text (see body_cost.h). Not a compiler: it knows operators,
- * the words of lanes.h, and for-loops of the form that bodies have, `for (int c = 0; c < DIM; c++)`. */
+ * the words of lanes.h, macros, and loops and branches of the forms that bodies have:
+ * `for (int c = 0; c < DIM; c++)`, `if (limiter > 0.5)`. */
 #include "opencl/body_cost.h"
 
 #include <ctype.h>
@@ -9,6 +10,7 @@
 #include <string.h>
 
 #define DEPTH 32 /* of loops within each other; deeper ones count once */
+#define MACROS 8 /* within each other, likewise */
 
 static const struct {
     const char *name;
@@ -23,7 +25,8 @@ static const struct {
 
 struct count {
     const char *at;
-    int dim;
+    const struct body_text *body;
+    int macros; /* that this text is within */
     double flops;
     struct {
         double times;       /* of all loops around, this one's included */
@@ -44,11 +47,76 @@ static const char *skip_comment(const char *s)
     return s + strcspn(s, "\n"); /* "//", "#" */
 }
 
+static size_t word_length(const char *s)
+{
+    size_t n = 0;
+
+    while (isalnum((unsigned char)s[n]) || s[n] == '_')
+        n++;
+    return n;
+}
+
+/* What a macro stands for, its parameters passed over, with lines that go on joined; NULL: there is no such one.
+ * The caller frees it. */
+static char *macro(const struct body_text *b, const char *name, size_t n)
+{
+    static const char word[] = "#define ";
+    const char *s = b->prelude;
+    char *text;
+    size_t k = 0;
+
+    while (s && (s = strstr(s, word)) != NULL) {
+        s += sizeof(word) - 1;
+        s += strspn(s, " \t");
+        if (word_length(s) == n && strncmp(s, name, n) == 0)
+            break;
+    }
+    if (!s)
+        return NULL;
+    s += n;
+    if (*s == '(')
+        s += strcspn(s, ")\n");
+    s += *s == ')';
+    text = malloc(strlen(s) + 1);
+    for (; text && *s && *s != '\n'; s++) {
+        if (s[0] == '\\' && s[1] == '\n')
+            s++;
+        text[k++] = *s == '\n' ? ' ' : *s;
+    }
+    if (text)
+        text[k] = '\0';
+    return text;
+}
+
+/* A loop's bound, as far as it is known: a product of DIM and numbers. */
+static double bound(const struct body_text *b, const char *text, int macros)
+{
+    double times = 1.0;
+
+    for (const char *s = text; *s;) {
+        char *end = NULL;
+        const double number = strtod(s, &end);
+        const size_t n = isdigit((unsigned char)*s) ? 0 : word_length(s);
+        if (n == 3 && strncmp(s, "DIM", 3) == 0) {
+            times *= b->dim;
+        } else if (n) {
+            char *body = macros < MACROS ? macro(b, s, n) : NULL;
+            times *= body ? bound(b, body, macros + 1) : 1.0;
+            free(body);
+        } else if (end > s) {
+            times *= number;
+            s = end;
+            continue;
+        }
+        s += n ? n : 1;
+    }
+    return times;
+}
+
 /* What a loop's condition says: "c < DIM", "n <= 4". */
-static double times_of(const char *condition, size_t n, int dim)
+static double times_of(const struct body_text *b, const char *condition, size_t n)
 {
     const char *less = memchr(condition, '<', n);
-    double times = 1.0;
     char text[64];
 
     if (!less)
@@ -58,20 +126,7 @@ static double times_of(const char *condition, size_t n, int dim)
     n = n < sizeof(text) - 1 ? n : sizeof(text) - 1;
     memcpy(text, less + 1 + last, n);
     text[n] = '\0';
-    for (const char *s = text; *s;) {
-        char *end = NULL;
-        const double number = strtod(s, &end);
-        if (strncmp(s, "DIM", 3) == 0) {
-            times *= dim;
-            s += 3;
-        } else if (end > s) {
-            times *= number;
-            s = end;
-        } else {
-            s++;
-        }
-    }
-    return times + (last ? 1.0 : 0.0);
+    return bound(b, text, 0) + (last ? 1.0 : 0.0);
 }
 
 static double times(const struct count *c)
@@ -89,7 +144,7 @@ static void enter_loop(struct count *c)
     c->at += 3;
     if (!second || c->n_loop == DEPTH)
         return;
-    const double here = times(c) * times_of(first + 1, (size_t)(second - first - 1), c->dim);
+    const double here = times(c) * times_of(c->body, first + 1, (size_t)(second - first - 1));
     for (c->at = open + 1; *c->at && depth > 0; c->at++)
         depth += (*c->at == '(') - (*c->at == ')');
     while (isspace((unsigned char)*c->at))
@@ -116,21 +171,73 @@ static void close_brace(struct count *c)
     }
 }
 
+/* Whether "(NAME < NUMBER)" or "(NAME > NUMBER)" is known to be false. */
+static bool is_false(const struct body_text *b, const char *s)
+{
+    s += strspn(s, " (");
+    const size_t n = word_length(s);
+    const char *sign = s + n + strspn(s + n, " ");
+    char *end;
+    const double number = *sign == '<' || *sign == '>' ? strtod(sign + 1, &end) : 0.0;
+
+    if ((*sign != '<' && *sign != '>') || end == sign + 1 || end[strspn(end, " ")] != ')')
+        return false;
+    for (size_t k = 0; k < b->n_known; k++)
+        if (strlen(b->known[k].name) == n && strncmp(b->known[k].name, s, n) == 0)
+            return !(*sign == '<' ? b->known[k].value < number : b->known[k].value > number);
+    return false;
+}
+
+/* Over a bracket and all within it. */
+static const char *skip_bracket(const char *s)
+{
+    int depth = 0;
+
+    do {
+        if (s[0] == '/' && (s[1] == '*' || s[1] == '/')) {
+            s = skip_comment(s);
+            continue;
+        }
+        depth += (*s == '(' || *s == '{') - (*s == ')' || *s == '}');
+        s += *s != '\0';
+    } while (*s && depth > 0);
+    return s;
+}
+
+static void skip_branch(struct count *c)
+{
+    c->at += strcspn(c->at, "(");
+    c->at = skip_bracket(c->at);
+    while (isspace((unsigned char)*c->at))
+        c->at++;
+    c->at = *c->at == '{' ? skip_bracket(c->at) : c->at + strcspn(c->at, ";");
+    c->operand = false;
+}
+
+static double flops_of(const struct body_text *b, const char *text, int macros);
+
 static void word(struct count *c)
 {
-    size_t n = 1;
+    const char *const name = c->at;
+    const size_t n = word_length(name);
 
-    while (isalnum((unsigned char)c->at[n]) || c->at[n] == '_')
-        n++;
-    if (n == 3 && strncmp(c->at, "for", 3) == 0) {
+    if (n == 3 && strncmp(name, "for", 3) == 0) {
         enter_loop(c);
         return;
     }
+    if (n == 2 && strncmp(name, "if", 2) == 0 && is_false(c->body, name + 2)) {
+        skip_branch(c);
+        return;
+    }
     for (size_t k = 0; k < sizeof(words) / sizeof(words[0]); k++)
-        if (strlen(words[k].name) == n && strncmp(c->at, words[k].name, n) == 0)
+        if (strlen(words[k].name) == n && strncmp(name, words[k].name, n) == 0)
             c->flops += times(c) * words[k].flops;
+    char *const body = c->macros < MACROS ? macro(c->body, name, n) : NULL;
+    if (body)
+        c->flops += times(c) * flops_of(c->body, body, c->macros + 1);
+    free(body);
     c->at += n;
-    c->operand = true;
+    c->operand = n != 6 || strncmp(name, "return", 6) != 0;
 }
 
 static void symbol(struct count *c)
@@ -153,9 +260,9 @@ static void symbol(struct count *c)
         leave_statement(c);
 }
 
-double body_flops(const char *text, int dim)
+static double flops_of(const struct body_text *b, const char *text, int macros)
 {
-    struct count c = {.at = text, .dim = dim};
+    struct count c = {.at = text, .body = b, .macros = macros};
 
     while (*c.at) {
         if ((c.at[0] == '/' && (c.at[1] == '*' || c.at[1] == '/')) || c.at[0] == '#')
@@ -173,4 +280,9 @@ double body_flops(const char *text, int dim)
             symbol(&c);
     }
     return c.flops;
+}
+
+double body_flops(const struct body_text *b)
+{
+    return flops_of(b, b->text, 0);
 }

@@ -1,9 +1,11 @@
-/* opencl/bundles.cl -- the same lists for processors, by vectors, as worker.c and filter.c make them: groups that
- * stand side by side share a search and a copy of the leaves found, in floats relative to their common centre (a
- * bundle). A group whose lanes are far apart, or that has more sources than ROOM_MOST, is left to lists.cl; whether it
- * is depends on the points alone. Slots that have too little room say in `need` how much they want.
+/* opencl/bundles.cl -- the same lists for processors, by vectors, as worker.c and filter.c make
+ * them: groups that stand side by side share a search and a copy of the leaves found, in floats
+ * relative to their common centre (a bundle). A group whose lanes are far apart, or that has more
+ * sources than ROOM_MOST, is left to lists.cl; whether it is depends on the points alone. Slots
+ * that have too little room say in `need` how much they want.
  *
- * A work item takes BUNDLE_RUN groups; which of them are a bundle does not depend on how many work items there are. */
+ * A work item takes BUNDLE_RUN groups; which of them are a bundle does not depend on how many
+ * work items there are. */
 
 #define BUNDLE_RUN 48u
 #define BUNDLE_MOST 12u   /* groups */
@@ -57,7 +59,8 @@ INLINE struct span span_join(struct span s, const struct span *t)
     return s;
 }
 
-/* Numbers of the bits of a mask, from `base` on; room for eight. Table: of each mask its bits' numbers. */
+/* Numbers of the bits of a mask, from `base` on; room for eight. Table: of each mask its bits'
+ * numbers. */
 INLINE uint put_bits(uint *out, __global const uchar *table, uint mask, uint base)
 {
     vstore8(convert_uint8(vload8(mask, table)) + base, 0, out);
@@ -110,7 +113,8 @@ INLINE float most_f(float8 v)
     return q.x > q.y ? q.x : q.y;
 }
 
-/* Copies leaves relative to a centre, in units of 1 / inverse; boxes of eight are [lo, hi of each axis, reach]. */
+/* Copies leaves relative to a centre, in units of 1 / inverse; boxes of eight are [lo, hi of each
+ * axis, reach]. */
 INLINE void bundle_pack(float8 *pack, float *box, const uint *leaf, uint n, const double *centre,
                         double inverse, __global const double *wide, struct points p)
 {
@@ -155,7 +159,8 @@ INLINE void bundle_pack(float8 *pack, float *box, const uint *leaf, uint n, cons
     }
 }
 
-/* A group's lanes i and 4 + i, side by side; a source b is seen if s - 2 a.b + a^2 <= max(reach^2, r2). */
+/* A group's lanes i and 4 + i, side by side; a source b is seen if s - 2 a.b + a^2 <= max(reach^2,
+ * r2). */
 struct lanes {
     float16 m2a[4][DIM], a2[4], r2[4];
     float lo[DIM], hi[DIM], reach;
@@ -212,7 +217,8 @@ INLINE uint group_leaves(uint *chosen, const float *box, uint n, const struct la
 
         FOR_AXES
         {
-            const float8 below = vload8(2 * a, b) - t->hi[a], above = t->lo[a] - vload8(2 * a + 1, b);
+            const float8 below = vload8(2 * a, b) - t->hi[a],
+                         above = t->lo[a] - vload8(2 * a + 1, b);
             float8 d = below > above ? below : above;
 
             d = d > 0.0f ? d : (float8)0.0f;
@@ -230,7 +236,8 @@ INLINE uint2 see(const float8 *p, const struct lanes *t, float16 reach2, bool un
     const float16 s = (float16)(p[DIM], p[DIM]);
     float16 r2 = (float16)(p[DIM + 1], p[DIM + 1]), any_near, own_near;
 
-    for (uint i = 0; i < 4; i++) {
+    UNROLL for (uint i = 0; i < 4; i++)
+    {
         float16 d = t->a2[i];
 
         FOR_AXES d += t->m2a[i][a] * (float16)(p[a], p[a]);
@@ -254,8 +261,8 @@ INLINE uint2 see(const float8 *p, const struct lanes *t, float16 reach2, bool un
     return (uint2)(bits_of(as_char8(m.x)), bits_of(as_char8(m.y)));
 }
 
-/* The sources of a group, to its slot: those of both halves, of the lower, of the upper one, `room` each. Where that
- * is not enough they are counted. */
+/* The sources of a group, to its slot: those of both halves, of the lower, of the upper one, `room`
+ * each. Where that is not enough they are counted. */
 INLINE void group_take(struct found *f, __global uint *slot, uint room, const float8 *pack,
                        const float *box, const uint *leaf, uint n, uint *chosen,
                        const struct lanes *t, uint own, __global const uchar *table, bool uniform)
@@ -283,7 +290,8 @@ INLINE void group_take(struct found *f, __global uint *slot, uint room, const fl
     f->n[UPPER] = high;
 }
 
-/* Numbers in the search's order become indices; the group's own places, at most eight, go to both halves. */
+/* Numbers in the search's order become indices; the group's own places, at most eight, go to both
+ * halves. */
 INLINE void group_map(struct found *f, __global uint *slot, uint room, __global const uint *order,
                       uint group)
 {
@@ -392,6 +400,21 @@ KERNEL void bundles_look(__global const double *dst_wide, struct points dst, dou
     }
 }
 
+/* Copies eight at a time, and up to seven too many, unless exactly. */
+INLINE void copy_to(__global uint *restrict out, __global const uint *restrict in, uint n,
+                    bool exact)
+{
+    const uint end = exact ? n & ~7u : n;
+    uint i = 0;
+
+    for (; i < end; i += 8) {
+        vstore8(vload8(0, in + i), 0, out + i);
+    }
+    for (; i < n; i++) {
+        out[i] = in[i];
+    }
+}
+
 /* From the slots into the list. */
 KERNEL void bundles_put(struct stretch t, __global const uint *counts,
                         __global const uint *restrict slots, uint room, __global const uint *first,
@@ -415,15 +438,21 @@ KERNEL void bundles_put(struct stretch t, __global const uint *counts,
         if (counts[k + HERE * t.stride]) {
             continue;
         }
-        for (uint i = 0; i < f.n[BOTH]; i++) {
-            out[i] = both[i];
-        }
+        /* What is too much stands where the run's next groups are put, and nowhere else. */
+        const bool exact = first[t.from + end] - first[t.from + k + 1] < 16;
+
+        copy_to(out, both, f.n[BOTH], exact);
         out += f.n[BOTH];
-        for (uint i = 0; i < more_of; i++) {
-            out[i] = rest[i];
-        }
+        copy_to(out, rest, more_of, exact);
         out += more_of;
-        for (uint i = 0; i < turns; i++) {
+        for (uint i = 0; i < (exact ? turns & ~7u : turns); i += 8) {
+            const uint8 p = vload8(0, low + i), q = vload8(0, high + i);
+
+            vstore16((uint16)(p.s0, q.s0, p.s1, q.s1, p.s2, q.s2, p.s3, q.s3, p.s4, q.s4, p.s5,
+                              q.s5, p.s6, q.s6, p.s7, q.s7),
+                     0, out + 2 * i);
+        }
+        for (uint i = turns & ~7u; i < turns && exact; i++) {
             out[2 * i] = low[i];
             out[2 * i + 1] = high[i];
         }

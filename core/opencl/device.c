@@ -115,6 +115,7 @@ static void find_facts(struct device *d)
     clGetDeviceInfo(d->id, CL_DEVICE_GLOBAL_MEM_SIZE, sizeof(memory), &memory, NULL);
     clGetDeviceInfo(d->id, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof(largest), &largest, NULL);
     clGetDeviceInfo(d->id, CL_DEVICE_MAX_WORK_GROUP_SIZE, sizeof(group), &group, NULL);
+    f->type = opencl_type(type);
     f->cpu = (type & CL_DEVICE_TYPE_CPU) != 0;
     f->fp64 = fp64 != 0;
     f->units = units;
@@ -244,6 +245,7 @@ void device_close(struct device *d)
     if (d->part)
         clReleaseDevice(d->id);
     free(d->pending);
+    free(d->span);
     free(d->memory);
     free(d->time);
     free(d);

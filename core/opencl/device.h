@@ -17,6 +17,7 @@ struct device;
 
 struct device_facts {
     char name[128], platform[128], driver[128];
+    const char *type;  /* "cpu", "gpu", "accelerator", "other" */
     bool cpu;          /* explicit vectors pay: a work item takes a group of destinations */
     bool fp64;         /* has double precision */
     uint32_t units;    /* compute units */
@@ -129,6 +130,16 @@ struct device_time {
 };
 /* All so far, waited for; the device's, until the next call. */
 const struct device_time *device_times(struct device *d, size_t *n);
+
+/* Commands are counted in spans as well, by what the host was about when it gave them. What follows counts to
+ * span k, a small number, 0 at first; returns the one that was counted to. */
+size_t device_span(struct device *d, size_t k);
+struct device_span {
+    double busy; /* its commands [s] */
+    double idle; /* the device had nothing to do, from one of its commands to its next [s] */
+};
+/* All so far, waited for; the device's, until the next call. */
+const struct device_span *device_spans(struct device *d, size_t *n);
 
 /* What the device reaches with the simplest kernels; 0: does not have it. */
 struct device_rates {

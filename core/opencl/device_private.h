@@ -11,7 +11,8 @@
 /* A launch or transfer whose time is not read yet. */
 struct device_pending {
     cl_event event;
-    size_t row;   /* of the times */
+    size_t row; /* of the times */
+    size_t span;
     void *staged; /* what a write reads from; freed after it */
 };
 
@@ -49,6 +50,10 @@ struct device {
     char wrong_file[256];     /* of the last build that failed */
     struct device_time *time; /* a row a name */
     size_t n_time;
+    struct device_span *span;
+    size_t n_span, now;             /* now: what is given counts to it */
+    size_t last;                    /* of the last command that was read */
+    cl_ulong last_end;              /* when that ended; 0: there was none */
     struct device_pending *pending; /* in the queue's order */
     size_t n_pending, unflushed;
     bool failed; /* to do something */

@@ -31,6 +31,44 @@ size_t device_row(struct device *d, const char *name)
     return d->n_time++;
 }
 
+/* One queue, in order: a command begins once the one before it has ended. */
+static void count(struct device *d, const struct device_pending *p, cl_ulong begin, cl_ulong end)
+{
+    struct device_span *span = &d->span[p->span];
+
+    if (end > begin) {
+        d->time[p->row].seconds += 1e-9 * (double)(end - begin);
+        span->busy += 1e-9 * (double)(end - begin);
+    }
+    if (d->last == p->span && d->last_end && begin > d->last_end)
+        span->idle += 1e-9 * (double)(begin - d->last_end);
+    d->last = p->span;
+    d->last_end = end;
+}
+
+size_t device_span(struct device *d, size_t k)
+{
+    const size_t before = d->now;
+
+    if (k >= d->n_span) {
+        struct device_span *grown = realloc(d->span, (k + 1) * sizeof(*grown));
+        if (!grown)
+            return before; /* times are not worth a failure: they count to the wrong span */
+        memset(grown + d->n_span, 0, (k + 1 - d->n_span) * sizeof(*grown));
+        d->span = grown;
+        d->n_span = k + 1;
+    }
+    d->now = k;
+    return before;
+}
+
+const struct device_span *device_spans(struct device *d, size_t *n)
+{
+    device_collect(d, NULL);
+    *n = d->n_span;
+    return d->span;
+}
+
 /* Adds the first n noted to their rows. */
 static int collect(struct device *d, size_t n, struct error *e)
 {
@@ -50,9 +88,8 @@ static int collect(struct device *d, size_t n, struct error *e)
         if (clGetEventProfilingInfo(p->event, CL_PROFILING_COMMAND_START, sizeof(begin), &begin,
                                     NULL) == CL_SUCCESS &&
             clGetEventProfilingInfo(p->event, CL_PROFILING_COMMAND_END, sizeof(end), &end, NULL) ==
-                CL_SUCCESS &&
-            end > begin)
-            d->time[p->row].seconds += 1e-9 * (double)(end - begin);
+                CL_SUCCESS)
+            count(d, p, begin, end);
         clReleaseEvent(p->event);
         free(p->staged);
     }
@@ -73,13 +110,15 @@ int device_note(struct device *d, cl_event event, size_t row, size_t bytes, void
 {
     if (!d->pending)
         d->pending = malloc(PENDING_MOST * sizeof(*d->pending));
-    if (!d->pending || row == SIZE_MAX) {
+    if (!d->n_span)
+        device_span(d, 0);
+    if (!d->pending || !d->n_span || row == SIZE_MAX) {
         clFinish(d->queue);
         clReleaseEvent(event);
         free(staged);
         return error_memory(e, "the times of a device", PENDING_MOST * sizeof(*d->pending));
     }
-    d->pending[d->n_pending++] = (struct device_pending){event, row, staged};
+    d->pending[d->n_pending++] = (struct device_pending){event, row, d->now, staged};
     d->time[row].launches++;
     d->time[row].bytes += bytes;
     if (++d->unflushed >= FLUSH_EVERY) {

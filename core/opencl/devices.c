@@ -18,7 +18,7 @@ bool opencl_is_built(void)
     return true;
 }
 
-static const char *type_name(cl_device_type type)
+const char *opencl_type(uint64_t type)
 {
     if (type & CL_DEVICE_TYPE_GPU)
         return "gpu";
@@ -54,7 +54,7 @@ static void describe(struct opencl_device *d, cl_platform_id platform, cl_device
     clGetDeviceInfo(id, CL_DEVICE_GLOBAL_MEM_SIZE, sizeof(memory), &memory, NULL);
     clGetDeviceInfo(id, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof(largest), &largest, NULL);
     clGetDeviceInfo(id, CL_DEVICE_DOUBLE_FP_CONFIG, sizeof(fp64), &fp64, NULL);
-    d->type = type_name(type);
+    d->type = opencl_type(type);
     d->units = units;
     d->memory = memory;
     d->largest = largest;

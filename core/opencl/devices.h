@@ -16,6 +16,9 @@ struct opencl_device {
     bool fp64;        /* has double precision */
 };
 
+/* A cl_device_type's word. */
+const char *opencl_type(uint64_t type);
+
 /* Was OpenCL built in? */
 bool opencl_is_built(void);
 

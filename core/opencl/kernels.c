@@ -32,7 +32,7 @@ struct kernels {
 /* -- Build -------- */
 
 /* Passes' names, joined: what times are told under. */
-static char *label_of(const struct kernels *k, const struct stage *s)
+char *stage_label(const struct plan *plan, const struct stage *s)
 {
     char *text = NULL;
     size_t size = 0;
@@ -41,8 +41,7 @@ static char *label_of(const struct kernels *k, const struct stage *s)
     if (!out)
         return NULL;
     for (size_t i = 0; i < s->n; i++)
-        fprintf(out, "%s%s", i ? " + " : "", k->plan->pass[s->pass[i]].step);
-    fprintf(out, " (%s)", k->plan->array[s->array].p.name);
+        fprintf(out, "%s%s", i ? "+" : "", plan->pass[s->pass[i]].name);
     fclose(out);
     return text;
 }
@@ -52,7 +51,7 @@ static int find_kernels(struct kernels *k, int uniform, struct error *e)
     char name[64];
 
     for (size_t i = 0; i < k->n; i++) {
-        char *label = label_of(k, k->shape[i].stage);
+        char *label = stage_label(k->plan, k->shape[i].stage);
         int status = label ? 0 : error_memory(e, "a stage", 64);
         for (int part = 0; !status && part < PART_COUNT; part++) {
             if (k->shape[i].phased != (part != PART_ALL))

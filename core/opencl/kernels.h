@@ -28,6 +28,8 @@ int kernels_make_as(struct kernels **out, struct device *d, const struct plan *p
                     const struct arena *arena, const struct stage *stage, size_t n_stage,
                     bool vectors, struct error *e);
 void kernels_free(struct kernels *k);
+/* What the stage's time is told under: the names of its passes with "+" between them. The caller frees it. */
+char *stage_label(const struct plan *plan, const struct stage *s);
 
 /* Parameters and numbers of states as they are now go to the device, if they have changed. */
 int kernels_update(struct kernels *k, struct error *e);

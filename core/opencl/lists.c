@@ -1,8 +1,10 @@
-/* opencl/lists.c -- neighbour lists on a device (see lists.h; the kernels are lists.cl and bundles.cl).
+/* opencl/lists.c -- neighbour lists on a device (see lists.h; the kernels are lists.cl and
+ * bundles.cl).
  *
- * A processor makes them a slab of groups at a time: found into slots, counted, moved to where the running sums say,
- * all of it within the cache. A GPU counts all groups, then finds their sources again and writes them. Where the list
- * turns out to have too little room it is made anew with more: only ever the first time, or as lists grow. */
+ * A processor makes them a slab of groups at a time: found into slots, counted, moved to where
+ * the running sums say, all of it within the cache. A GPU counts all groups, then finds their
+ * sources again and writes them. Where the list turns out to have too little room it is made anew
+ * with more: only ever the first time, or as lists grow. */
 #include "config.h"
 
 #include "opencl/search.h"

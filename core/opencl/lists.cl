@@ -1,9 +1,9 @@
-/* opencl/lists.cl -- the sources of groups of eight destinations, group by group: counted, then written where the
- * running sums of the counts say; and what is true of them. In doubles and exact, whatever the group looks like:
- * on a processor bundles.cl does most groups faster.
+/* opencl/lists.cl -- the sources of groups of eight destinations, group by group: counted, then
+ * written where the running sums of the counts say; and what is true of them. In doubles and exact,
+ * whatever the group looks like: on a processor bundles.cl does most groups faster.
  *
- * counts: planes of `stride` uints, of the groups from `from` on: all sources of a group, those of both halves,
- * of the lower, of the upper one; 1 if it is done here. */
+ * counts: planes of `stride` uints, of the groups from `from` on: all sources of a group, those
+ * of both halves, of the lower, of the upper one; 1 if it is done here. */
 
 #define MANY (CPU ? 32u : 1u) /* groups that a work item takes */
 
@@ -18,8 +18,8 @@ struct found {
     uint n[4]; /* as counts; that of ALL is not looked at */
 };
 
-/* Where the k-th of a side goes, from the group's beginning: those of both halves first, what is left over of
- * the longer side next, then lower and upper in turns. */
+/* Where the k-th of a side goes, from the group's beginning: those of both halves first, what is
+ * left over of the longer side next, then lower and upper in turns. */
 INLINE uint place_of(const struct found *f, uint side, uint k)
 {
     const uint turns = min(f->n[LOWER], f->n[UPPER]);
@@ -29,6 +29,63 @@ INLINE uint place_of(const struct found *f, uint side, uint k)
         return k;
     }
     return k < turns ? common + 2 * k + (side == UPPER) : f->n[BOTH] + k - turns;
+}
+
+/* Bits of the sources [first, last), at most eight: seen by the lower half of the lanes, by the
+ * upper half. */
+INLINE uint2 sees(const struct asked *q, __global const double *wide, struct points src, uint first,
+                  uint last)
+{
+    double8 own = 0.0, x[DIM];
+    long8 near[2] = {0, 0};
+
+    FOR_AXES x[a] = load8(wide + src.x + a * src.plane, first, last);
+    if (src.scale > 0) {
+        own = src.scale * load8(wide + src.h, first, last);
+        own *= own;
+    }
+    UNROLL for (uint l = 0; l < 8; l++)
+    {
+        double8 r2 = 0.0;
+
+        FOR_AXES
+        {
+            const double8 d = q->x[a][l] - x[a];
+
+            r2 += d * d;
+        }
+        near[l / 4] |= r2 <= more((double8)q->r2[l], own);
+    }
+    return (uint2)(bits_of(convert_char8(near[0])), bits_of(convert_char8(near[1]))) &
+           (0xffu >> (8 - (last - first)));
+}
+
+/* Those of a side, from `first` on: written, if they are, and counted. */
+INLINE void found_add(struct found *f, uint side, uint mask, uint first, __global const uint *order,
+                      uint mapped, const struct found *known, __global uint *out)
+{
+    for (; mask && out; mask &= mask - 1) {
+        const uint j = first + first_bit(mask);
+
+        out[place_of(known, side, f->n[side]++)] = mapped ? order[j] : j;
+    }
+    f->n[side] += popcount(mask);
+}
+
+/* Of some of a leaf's sources those that are in the group itself. */
+INLINE uint own_of(uint mask, uint first, __global const uint *order, uint mapped, uint group)
+{
+    uint own = 0;
+
+    if (!mapped) {
+        return first / 8 == group ? mask : 0;
+    }
+    for (; mask; mask &= mask - 1) {
+        const uint k = first_bit(mask);
+
+        own |= (uint)(order[first + k] / 8 == group) << k;
+    }
+    return own;
 }
 
 /* Counts them, or writes them to `out` by counts that are known. */
@@ -45,31 +102,13 @@ INLINE struct found group_do(const struct asked *q, const struct index *s, INDEX
     while (walk_next(&w, s, FOUND_IN, q, &block, &mask)) {
         for (; mask; mask &= mask - 1) {
             const uint first = (block * 8 + first_bit(mask)) * 8;
-            const uint last = min(first + 8, s->n);
+            const uint2 m = sees(q, wide, src, first, min(first + 8, s->n));
+            const uint all = m.x | m.y;
+            const uint both = (m.x & m.y) | own_of(all, first, order, mapped, group);
 
-            for (uint j = first; j < last; j++) {
-                const double reach = src.scale > 0 ? src.scale * wide[src.h + j] : 0.0;
-                double8 r2 = 0.0;
-
-                FOR_AXES
-                {
-                    const double8 d = q->x[a] - wide[src.x + a * src.plane + j];
-
-                    r2 += d * d;
-                }
-                const long8 near = r2 <= more(q->r2, (double8)(reach * reach));
-                const bool low = any(near.lo), high = any(near.hi);
-
-                if (low || high) {
-                    const uint index = mapped ? order[j] : j;
-                    const uint side = index / 8 == group || (low && high) ? BOTH : low ? LOWER : UPPER;
-
-                    if (out) {
-                        out[place_of(known, side, f.n[side])] = index;
-                    }
-                    f.n[side]++;
-                }
-            }
+            found_add(&f, BOTH, both, first, order, mapped, known, out);
+            found_add(&f, LOWER, m.x & ~both, first, order, mapped, known, out);
+            found_add(&f, UPPER, m.y & ~both, first, order, mapped, known, out);
         }
     }
     return f;
@@ -112,8 +151,9 @@ INLINE struct found counted(__global const uint *c, uint stride)
 KERNEL void list_fill(__global const double *dst_wide, struct points dst, double factor,
                       __global const double *wide, struct points src, struct index s, INDEX,
                       __global const uint *order, uint mapped, struct stretch t,
-                      __global const uint *counts, __global const uint *first, __global uint *common,
-                      __global uint *step, __global const ulong *total, uint slot, ulong room)
+                      __global const uint *counts, __global const uint *first,
+                      __global uint *common, __global uint *step, __global const ulong *total,
+                      uint slot, ulong room)
 {
     const ulong begin = get_global_id(0) * MANY, end = min(begin + MANY, (ulong)t.n);
 
@@ -121,8 +161,7 @@ KERNEL void list_fill(__global const double *dst_wide, struct points dst, double
         const uint group = t.from + (uint)k;
         const struct found f = counted(counts + k, t.stride);
 
-        common[group] =
-            f.n[BOTH] + max(f.n[LOWER], f.n[UPPER]) - min(f.n[LOWER], f.n[UPPER]);
+        common[group] = f.n[BOTH] + max(f.n[LOWER], f.n[UPPER]) - min(f.n[LOWER], f.n[UPPER]);
         if (counts[k + HERE * t.stride] && total[slot + 1] <= room) {
             struct asked q;
 
@@ -132,8 +171,8 @@ KERNEL void list_fill(__global const double *dst_wide, struct points dst, double
     }
 }
 
-/* Of a work group's groups: true pairs within reach, no particle with itself; destinations with more than `most`.
- * Where nobody counts only groups are looked at that may have those. */
+/* Of a work group's groups: true pairs within reach, no particle with itself; destinations with
+ * more than `most`. Where nobody counts only groups are looked at that may have those. */
 KERNEL void list_pairs(__global const double *dst_wide, struct points dst,
                        __global const double *wide, struct points src, uint same, uint groups,
                        uint counts, ulong most, __global const uint *begin,

@@ -29,35 +29,42 @@ static const struct {
     [K_REFRESH_NARROW] = {"refresh_narrow", "ghosts"},
 };
 
-/* All texts as one: what is for LANES particles once for one and once for eight. The caller frees it. */
-static char *whole_text(void)
+/* A set's texts as one: what is for LANES particles once for one and once for eight. The caller frees it. */
+static char *text_of(int set)
 {
-    const char *const part[] = {ops_words_text,     "\n#define LANES 1\n", ops_lanes_text,
-                                "\n#undef LANES\n", "#define LANES 8\n",   ops_lanes_text,
-                                ops_columns_text,   ops_reduce_text,       ops_sides_text};
-    size_t bytes = 1, at = 0;
-    for (size_t k = 0; k < sizeof part / sizeof part[0]; k++)
-        bytes += strlen(part[k]);
+    static const char *const part[OPS_SETS][8] = {
+        [OPS_COLUMNS] = {ops_words_text, "\n#define LANES 1\n", ops_lanes_text,
+                         "\n#undef LANES\n#define LANES 8\n", ops_lanes_text, ops_columns_text,
+                         ops_reduce_text},
+        [OPS_SIDES] = {ops_words_text, ops_sides_text}};
+    size_t bytes = 1;
+    for (size_t k = 0; part[set][k]; k++)
+        bytes += strlen(part[set][k]);
     char *text = malloc(bytes);
-    for (size_t k = 0; text && k < sizeof part / sizeof part[0]; k++) {
-        const size_t n = strlen(part[k]);
-        memcpy(text + at, part[k], n + 1);
-        at += n;
-    }
+    if (text)
+        *text = '\0';
+    for (size_t k = 0; text && part[set][k]; k++)
+        strcat(text, part[set][k]);
     return text;
 }
 
-static int build(struct ops *o, struct error *e)
+int ops_build(struct ops *o, enum ops_kernel k, struct error *e)
 {
-    char options[64], *text = whole_text();
+    const int set = k < K_WRAP ? OPS_COLUMNS : OPS_SIDES;
+    const size_t first = set == OPS_COLUMNS ? 0 : K_WRAP,
+                 end = set == OPS_COLUMNS ? K_WRAP : OPS_KERNELS;
+    char options[64], *text;
+    if (o->kernel[k])
+        return 0;
+    text = text_of(set);
     if (!text)
         return error_memory(e, "the text of kernels", 1);
     snprintf(options, sizeof options, "-DDIM=%d -DWIDE=%zu", o->dim, o->wide);
-    int status = device_build(o->d, &o->program, text, options, "the core's own kernels", e);
+    int status = device_build(o->d, &o->program[set], text, options, "the core's own kernels", e);
     free(text);
-    for (size_t k = 0; !status && k < OPS_KERNELS; k++)
-        status =
-            device_kernel(o->d, o->program, kernels[k].name, kernels[k].timed, &o->kernel[k], e);
+    for (size_t i = first; !status && i < end; i++)
+        status = device_kernel(o->d, o->program[set], kernels[i].name, kernels[i].timed,
+                               &o->kernel[i], e);
     return status;
 }
 
@@ -71,7 +78,7 @@ int ops_open_wide(struct ops **out, struct device *d, int dim, size_t wide, stru
     o->d = d;
     o->dim = dim;
     o->wide = wide;
-    if (build(o, e) || device_reserve(d, &o->words, bytes, "results", e) ||
+    if (ops_build(o, K_ADVANCE, e) || device_reserve(d, &o->words, bytes, "results", e) ||
         device_fill(d, &o->words, 0, 0, bytes, e)) {
         ops_close(o);
         *out = NULL;
@@ -94,8 +101,8 @@ void ops_close(struct ops *o)
     ops_forget_programs(o);
     for (size_t k = 0; k < sizeof all / sizeof all[0]; k++)
         device_release(o->d, all[k]);
-    if (o->program)
-        device_program_free(o->d, o->program);
+    for (int set = 0; set < OPS_SETS; set++)
+        device_program_free(o->d, o->program[set]);
     free(o->box);
     free(o->turned);
     free(o);

@@ -33,6 +33,10 @@ enum ops_kernel {
     OPS_KERNELS
 };
 
+/* Kernels are built in two programs, the second when one of its own is first asked for: domains without sides
+ * never do. */
+enum { OPS_COLUMNS, OPS_SIDES, OPS_SETS };
+
 /* A program of the integrator as it is on the device: actions, for any step. */
 #define OPS_PROGRAMS 32
 struct ops_program {
@@ -45,7 +49,7 @@ struct ops {
     struct device *d;
     int dim;
     size_t wide; /* particles of a work item */
-    struct device_program *program;
+    struct device_program *program[OPS_SETS];
     struct device_kernel *kernel[OPS_KERNELS];
     struct device_buffer words; /* struct ops_words, then OPS_RESULTS doubles */
     struct device_buffer part, scratch, count, sides, table;
@@ -72,10 +76,15 @@ static inline uint32_t ops_slot(const struct arena *a, int column)
     return at->slot | (at->size == 4 ? SLOT_NARROW : 0u);
 }
 
-/* Launches kernel `k` for `items` work items with DEVICE_... arguments. */
+/* Kernel `k` is built. */
+int ops_build(struct ops *o, enum ops_kernel k, struct error *e);
+/* Launches it for `items` work items with DEVICE_... arguments. */
 #define OPS_LAUNCH(o, k, items, e, ...)                                                            \
-    device_launch((o)->d, (o)->kernel[k], items, (const struct device_arg[]){__VA_ARGS__},         \
-                  sizeof((const struct device_arg[]){__VA_ARGS__}) / sizeof(struct device_arg), e)
+    (ops_build(o, k, e)                                                                            \
+         ? -1                                                                                      \
+         : device_launch(                                                                          \
+               (o)->d, (o)->kernel[k], items, (const struct device_arg[]){__VA_ARGS__},            \
+               sizeof((const struct device_arg[]){__VA_ARGS__}) / sizeof(struct device_arg), e))
 
 /* Work items for n particles where each takes o->wide of them. */
 static inline size_t ops_items(const struct ops *o, size_t n)

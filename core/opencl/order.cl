@@ -1,4 +1,5 @@
-/* opencl/order.cl -- the order of cells: order.c's and edge.c's of the neighbours, comparison by comparison. */
+/* opencl/order.cl -- the order of cells: order.c's and edge.c's of the neighbours, comparison by
+ * comparison. */
 
 #define CELL_MOST 32u /* points of a cell that are sorted by x alone */
 #define GROUP 8u
@@ -51,8 +52,8 @@ INLINE bool before_id(__global const double *wide, ulong id, uint i, uint j)
     return p != q ? p < q : i < j;
 }
 
-/* Sorts the points of cells by x; end[c] is where cell c ends. Crowded ones are put on a list, crowd[1] and on, of
- * crowd[0]. */
+/* Sorts the points of cells by x; end[c] is where cell c ends. Crowded ones are put on a list,
+ * crowd[1] and on, of crowd[0]. */
 KERNEL void cells_sort(__global const double *wide, struct points p, ulong id, uint cells,
                        __global const uint *end, __global uint *order, __global uint *crowd)
 {
@@ -92,7 +93,8 @@ KERNEL void cells_sort(__global const double *wide, struct points p, ulong id, u
 
 /* -- A crowded cell -------- */
 
-/* Its members, by their places in the whole order: where they are, and in the last number their index. */
+/* Its members, by their places in the whole order: where they are, and in the last number their
+ * index. */
 struct crowd {
     __global double4 *m;
     __global const double *wide;
@@ -114,7 +116,7 @@ INLINE uint index_of(double4 m)
 INLINE bool member_before(const struct crowd *c, double4 a, double4 b, uint axis)
 {
     const double x = coordinate(a, axis), y = coordinate(b, axis);
-    const bool below = x < y, above = x > y;
+    const bool below = x<y, above = x> y;
 
     return below || above ? below != c->turned[axis]
                           : before_id(c->wide, c->id, index_of(a), index_of(b));
@@ -128,7 +130,8 @@ INLINE void member_swap(const struct crowd *c, uint k, uint q)
     c->m[q] = m;
 }
 
-/* One of [first, last), in the middle of three that were drawn: which changes the time, not the result. */
+/* One of [first, last), in the middle of three that were drawn: which changes the time, not the
+ * result. */
 INLINE uint draw_pivot(struct crowd *c, uint first, uint last, uint axis)
 {
     uint p[3];
@@ -207,8 +210,8 @@ INLINE uint longest_axis(const struct crowd *c, uint first, uint last)
     return axis;
 }
 
-/* Halves members across their longest extent until they are in groups, which begin at multiples of eight; a group
- * is sorted by x. Cells are walked upwards along x, and along the others in turns. */
+/* Halves members across their longest extent until they are in groups, which begin at multiples of
+ * eight; a group is sorted by x. Cells are walked upwards along x, and along the others in turns. */
 KERNEL void crowds_sort(__global const double *wide, struct points p, ulong id, uint row,
                         __global const uint *end, __global uint *order, __global const uint *crowd,
                         __global double4 *copy)

@@ -15,61 +15,23 @@
 
 /* -- Words -------- */
 
-/* Truth is bit 0 of a mask: comparisons give 1, and ~ turns it over. Masks select, as natively:
- * what a body computes out of reach, a NaN too, goes nowhere. sph_bits and what follows it is for
- * sph/lanes-math.h. */
-static const char *const words[] = {
-    "#pragma OPENCL EXTENSION cl_khr_fp64 : enable",
-    "typedef uint uint32_t;",
-    "typedef ulong uint64_t;",
-    "typedef int int32_t;",
-    "typedef long int64_t;",
-    "typedef double T;",
-    "typedef T R;",
-    "typedef int B;",
-    "typedef struct { double time, dt; ulong step; uint dim; } sph_batch;",
-    "typedef struct { ulong first; uint base; ushort count, common; } sph_span;",
-    "",
-    "#define sph_num(a) ((R)(a))",
-    "static R sph_select(B m, R a, R b) { return m & 1 ? a : b; }",
-    "static R sph_max(R a, R b) { return a > b ? a : b; }",
-    "static R sph_min(R a, R b) { return a < b ? a : b; }",
-    "static R sph_abs(R a) { return sph_max(a, -a); }",
-    "static R sph_sign(R a) { return (a > 0.0 ? 1.0 : 0.0) - (a < 0.0 ? 1.0 : 0.0); }",
-    "static R sph_sqrt(R a) { return sqrt(a); }",
-    "static R sph_rsqrt(R a) { return a < 2.2250738585072014e-308 ? 0.0 : 1.0 / sqrt(a); }",
-    "static R sph_ipow(R a, uint n)",
-    "{",
-    "    R out = n & 1u ? a : 1.0;",
-    "    a *= a;",
-    "    if (n & 2u)",
-    "        out *= a;",
-    "    a *= a;",
-    "    if (n & 4u)",
-    "        out *= a;",
-    "    a *= a;",
-    "    if (n & 8u)",
-    "        out *= a;",
-    "    return out;",
-    "}",
-    "#define sph_add(acc, value) ((acc) += sph_select(in, SPH_ADDED(value), 0.0))",
-    "#define sph_sub(acc, value) ((acc) -= sph_select(in, SPH_TAKEN(value), 0.0))",
-    "#define sph_take_min(acc, value) ((acc) = sph_min(sph_select(in, (value), (acc)), (acc)))",
-    "#define sph_take_max(acc, value) ((acc) = sph_max(sph_select(in, (value), (acc)), (acc)))",
-    "",
+/* Those of words.cl for one double; of the kernel W, whose form is known only when the sweep runs, others in their
+ * place. */
+static const char *const set[] = {
+    "#define SPH_ISA f64x1",
+    "#define SPH_WIDTH 1",
     "#define SPH_F32_WORDS 0",
-    "#define SPH_OF_ISA(name) name",
-    "#define SPH_FN(type, name, arguments) static type name arguments",
-    "#define I long",
-    "#define sph_int(a) ((I)(a))",
-    "#define sph_bits(a) as_long(a)",
-    "#define sph_of_bits(i) as_double(i)",
 };
 
-static const char *const pow_words[] = {
-    "#undef I",
-    "static R sph_pow_where(B m, R a, R b) { return m & 1 ? sph_pow(a, b) : 1.0; }",
-    "",
+static const char *const other_words[] = {
+    "#undef SPH_FORM",
+    "#undef SPH_ADDED",
+    "#undef SPH_TAKEN",
+    "#undef sph_w",
+    "#undef sph_dw",
+    "#undef sph_dw_q",
+    "#undef sph_grad",
+    "typedef struct { ulong first; uint base; ushort count, common; } sph_span;",
 };
 
 static const char *const kernel_words[] = {
@@ -330,9 +292,7 @@ static void put_extremes(FILE *out, const sph_list *list, const char *function)
     }
 }
 
-/* A text of the plugin, under the name of its file: compilers then speak of that file and its
- * lines. */
-static void put_text(FILE *out, const char *text, const char *file)
+void pair_source_text(FILE *out, const char *text, const char *file)
 {
     fputs("#line 1 \"", out);
     for (const char *s = file; *s; s++)
@@ -349,8 +309,8 @@ static void put_kernel(FILE *out, const sph_device_body *d, const struct pair_co
           "        return;\n"
           "    const ulong sph_g = sph_i / SPH_LANES;\n"
           "    const uint sph_half = sph_i % SPH_LANES >= SPH_LANES / 2;\n"
-          "    const sph_batch sph_now = {sph_time, sph_dt, sph_step, DIM};\n"
-          "    const sph_batch *const b = &sph_now;\n"
+          "    const sph_moment sph_now = {sph_time, sph_dt, sph_step, DIM};\n"
+          "    const sph_moment *const b = &sph_now;\n"
           "    R sph_x_i[DIM];\n"
           "    for (int sph_c = 0; sph_c < DIM; sph_c++)\n"
           "        sph_x_i[sph_c] = sph_xd[sph_c * sph_count + sph_i];\n"
@@ -367,12 +327,22 @@ static void put_kernel(FILE *out, const sph_device_body *d, const struct pair_co
     PUT(out, pair_words);
     put_values(out, &d->j, true);
     fputs("    {\n", out);
-    put_text(out, d->text, d->file);
+    pair_source_text(out, d->text, d->file);
     fputs("    }\n    }\n", out);
     put_sums(out, &d->sum);
     put_extremes(out, &d->min, "fmin");
     put_extremes(out, &d->max, "fmax");
     fputs("}\n", out);
+}
+
+void pair_source_words(FILE *out)
+{
+    PUT(out, set);
+    pair_source_text(out, words_text, "opencl/words.cl");
+    pair_source_text(out, math_text, "sph/lanes-math.h");
+    pair_source_text(out, words_end_text, "opencl/words_end.cl");
+    PUT(out, other_words);
+    PUT(out, kernel_words);
 }
 
 char *pair_source(const sph_device_body *d, int dim, bool measured, struct error *e)
@@ -391,10 +361,7 @@ char *pair_source(const sph_device_body *d, int dim, bool measured, struct error
         error_memory(e, "the source of a sweep", 0);
         return NULL;
     }
-    PUT(out, words);
-    put_text(out, math_text, "sph/lanes-math.h");
-    PUT(out, pow_words);
-    PUT(out, kernel_words);
+    pair_source_words(out);
     fprintf(out, "#define DIM %d\n#define SPH_LANES %u\n#define SPH_SELF %u\n", dim, SPH_LANES,
             d->self);
     fprintf(out, "#define SPH_REACH %s\n", d->reach == SPH_GATHER ? "h_i" : "sph_max(h_i, h_j)");
@@ -403,7 +370,7 @@ char *pair_source(const sph_device_body *d, int dim, bool measured, struct error
             measured ? "(sph_absolute ? fabs(value) : (value))" : "(value)",
             measured ? "(sph_absolute ? -fabs(value) : (value))" : "(value)");
     if (d->prelude)
-        put_text(out, d->prelude, d->prelude_file);
+        pair_source_text(out, d->prelude, d->prelude_file);
     put_kernel(out, d, column, n);
     bad = ferror(out);
     bad = fclose(out) != 0 || bad;

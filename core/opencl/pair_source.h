@@ -9,6 +9,7 @@
 #include <sph/device.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 #define PAIR_KERNEL "sph_sweep"
 
@@ -36,6 +37,11 @@ _Static_assert(SPH_KERNEL_COEFS == 6 && SPH_KERNEL_KNOTS == 4 &&
                    sizeof(struct pair_form) == 40 + 4 * 168,
                "sph_kernel_form in pair_source.c is another");
 void pair_form(struct pair_form *out, const sph_kernel_form *form);
+
+/* The words of bodies, of one double each, and the form of W; DIM is to be defined behind them. And a
+ * text of the plugin, under the name of its file: compilers then speak of that file and its lines. */
+void pair_source_words(FILE *out);
+void pair_source_text(FILE *out, const char *text, const char *file);
 
 /* The whole source for one dimension; the caller frees it. NULL: no memory. The kernel's arguments
  * are

@@ -1,7 +1,8 @@
-/* opencl/points.cl -- points on a device, what there is to know of them, and the cells in which they are.
+/* opencl/points.cl -- points on a device, what there is to know of them, and the cells in which
+ * they are.
  *
- * DIM: dimensions; CPU: explicit vectors pay; WG: work items of a group; EACH: things that a work item takes
- * one after the other. The structs are those of search.h. */
+ * DIM: dimensions; CPU: explicit vectors pay; WG: work items of a group; EACH: things that a work
+ * item takes one after the other. The structs are those of search.h. */
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 
 #define KERNEL __kernel __attribute__((reqd_work_group_size(WG, 1, 1)))
@@ -11,7 +12,9 @@
 #define LEVELS 12
 #define SLICE 4096
 #define FAR 1e150 /* squares of distances must be numbers too */
-#define FOR_AXES for (uint a = 0; a < DIM; a++)
+/* Compilers leave short loops as they are unless told. */
+#define UNROLL _Pragma("unroll")
+#define FOR_AXES UNROLL for (uint a = 0; a < DIM; a++)
 
 struct points {
     ulong x, h, plane;
@@ -25,7 +28,8 @@ struct index {
     uint n, n_leaf, n_level, pad, offset[LEVELS], nodes[LEVELS];
 };
 
-/* Numbers of eight lanes; what is no number is passed over by `less` and `more`, as it is on the host. */
+/* Numbers of eight lanes; what is no number is passed over by `less` and `more`, as it is on the
+ * host. */
 INLINE double8 less(double8 x, double8 than)
 {
     return x < than ? x : than;
@@ -78,8 +82,9 @@ INLINE uint first_bit(uint mask)
 
 /* -- What there is to know -------- */
 
-/* Of slice s lane l: elements s * SLICE + l, + 8, ...: least and largest of each axis, sum and largest of h, how
- * many numbers are none: out[(s * (2 DIM + 3) + quantity) * 8 + l]. One sum a lane, on all devices alike. */
+/* Of slice s lane l: elements s * SLICE + l, + 8, ...: least and largest of each axis, sum and
+ * largest of h, how many numbers are none: out[(s * (2 DIM + 3) + quantity) * 8 + l]. One sum a
+ * lane, on all devices alike. */
 #if CPU
 KERNEL void survey(__global const double *wide, struct points p, uint first, uint has_h,
                    __global double *out)

@@ -1,5 +1,5 @@
-/* opencl/search.c -- a device's search: its programs and rooms, what is known of clouds, and the structure in which
- * sources are sought (see search.h; the kernels are points.cl and search.cl). */
+/* opencl/search.c -- a device's search: its programs and rooms, what is known of clouds, and the
+ * structure in which sources are sought (see search.h; the kernels are points.cl and search.cl). */
 #include "config.h"
 
 #include "opencl/search.h"
@@ -263,7 +263,8 @@ static unsigned bits_in(double last)
 
 /* -- The structures -------- */
 
-/* Boxes of the sources' leaves, and of a tree's higher levels. *scattered: leaves much larger than a reach. */
+/* Boxes of the sources' leaves, and of a tree's higher levels. *scattered: leaves much larger than
+ * a reach. */
 static int boxes_make(struct device_search *s, const struct device_buffer *wide,
                       const struct search_points *p, double typical, struct search_index *ix,
                       uint32_t *scattered, struct error *e)

@@ -1,21 +1,22 @@
-/* opencl/search.cl -- which sources are near a box: leaves of eight sources, which stand side by side in the
- * search's order, and how those are found that may be.
+/* opencl/search.cl -- which sources are near a box: leaves of eight sources, which stand side by
+ * side in the search's order, and how those are found that may be.
  *
- * SEARCH 0: a tree of bounding boxes, eight leaves to a block and eight blocks to one above, each box with the
- * largest reach in it, for sources that stand in cell order or in Morton order. 1: cells of a grid as wide as the
- * largest reach, begin[cell] being the first source of each. 2: the same cells by sorted keys, found by
- * bisection, for boxes that are mostly empty; there, boxes are of leaves alone. What is found may have leaves too many: the filter of lists.cl decides.
- * Leaves come ascending, each once. INDEX: the
- * structure as arguments `rows`, what finds a row of cells in a grid, and `box`, the boxes. */
+ * SEARCH 0: a tree of bounding boxes, eight leaves to a block and eight blocks to one above, each
+ * box with the largest reach in it, for sources that stand in cell order or in Morton order. 1:
+ * cells of a grid as wide as the largest reach, begin[cell] being the first source of each. 2: the
+ * same cells by sorted keys, found by bisection, for boxes that are mostly empty; there, boxes are
+ * of leaves alone. What is found may have leaves too many: the filter of lists.cl decides. Leaves
+ * come ascending, each once. INDEX: the structure as arguments `rows`, what finds a row of cells in
+ * a grid, and `box`, the boxes. */
 
 /* Every reach is enlarged so much where leaves are left out as a whole, as on the host. */
 #define MARGIN 1e-4
 #define BLOCK ((2 * DIM + 1) * 8) /* doubles: lo, hi of each axis, reach, of eight boxes each */
 
-/* What is asked for, by eight lanes: sources nearer to one of them than the larger of its reach and their own.
- * The box is around all of them; spread: it is much larger than a reach. */
+/* What is asked for, by eight lanes: sources nearer to one of them than the larger of its reach and
+ * their own. The box is around all of them; spread: it is much larger than a reach. */
 struct asked {
-    double8 x[DIM], r2;
+    double x[DIM][8], r2[8];
     double lo[DIM], hi[DIM], reach, least;
     uint spread;
 };
@@ -27,14 +28,16 @@ INLINE void ask(struct asked *q, __global const double *wide, struct points p, d
     const double8 reach = factor * load8(wide + p.h, first, last);
     double sum = 0.0;
 
-    q->r2 = reach * reach;
+    vstore8(reach * reach, 0, q->r2);
     q->reach = most_of(reach);
     q->least = least_of(reach);
     FOR_AXES
     {
-        q->x[a] = load8(wide + p.x + a * p.plane, first, last);
-        q->lo[a] = least_of(q->x[a]);
-        q->hi[a] = most_of(q->x[a]);
+        const double8 x = load8(wide + p.x + a * p.plane, first, last);
+
+        vstore8(x, 0, q->x[a]);
+        q->lo[a] = least_of(x);
+        q->hi[a] = most_of(x);
         sum += (q->hi[a] - q->lo[a]) * (q->hi[a] - q->lo[a]);
     }
     q->spread = !(sum <= 4 * q->least * q->least);
@@ -130,29 +133,28 @@ INLINE uint near_box(const struct index *s, __global const double *box, const st
     return bits_of(convert_char8(gap <= reach * reach)) & (rest < 8 ? (1u << rest) - 1 : 0xffu);
 }
 
-/* Leaves out those that are near none of the lanes. */
+/* Which of them are near one of the lanes. */
 INLINE uint near_lanes(const struct index *s, __global const double *box, const struct asked *q,
-                       uint level, uint block, uint mask)
+                       uint level, uint block)
 {
     __global const double *b = box + (ulong)(s->offset[level] + block) * BLOCK;
+    const double8 reach = vload8(2 * DIM, b), own = reach * reach;
+    long8 near = 0;
 
-    for (uint left = mask; left; left &= left - 1) {
-        const uint k = first_bit(left);
-        const double own = b[16 * DIM + k] * b[16 * DIM + k];
+    for (uint l = 0; l < 8; l++) {
         double8 gap = 0.0;
 
         FOR_AXES
         {
-            const double8 below = b[16 * a + k] - q->x[a], above = q->x[a] - b[16 * a + 8 + k];
+            const double8 below = vload8(2 * a, b) - q->x[a][l];
+            const double8 above = q->x[a][l] - vload8(2 * a + 1, b);
             const double8 d = more(more(below, above), (double8)0.0);
 
             gap += d * d;
         }
-        if (!any(gap <= more(q->r2, (double8)own) * ((1 + MARGIN) * (1 + MARGIN)))) {
-            mask &= ~(1u << k);
-        }
+        near |= gap <= more((double8)q->r2[l], own) * ((1 + MARGIN) * (1 + MARGIN));
     }
-    return mask;
+    return bits_of(convert_char8(near));
 }
 
 /* ... or, if spread, near a lane. */
@@ -160,7 +162,7 @@ INLINE uint near_mask(const struct index *s, __global const double *box, const s
                       uint level, uint block, uint mask)
 {
     mask &= near_box(s, box, q, level, block);
-    return q->spread && mask ? near_lanes(s, box, q, level, block, mask) : mask;
+    return q->spread && mask ? mask & near_lanes(s, box, q, level, block) : mask;
 }
 
 #if SEARCH == 0
@@ -180,15 +182,15 @@ INLINE void walk_down(struct walk *w, const struct index *s, __global const doub
     w->mask[level] = near_mask(s, box, q, level, block, 0xffu);
 }
 
-INLINE void walk_begin(struct walk *w, const struct index *s, ROWS rows,
-                       __global const double *box, const struct asked *q)
+INLINE void walk_begin(struct walk *w, const struct index *s, ROWS rows, __global const double *box,
+                       const struct asked *q)
 {
     w->top = s->n_level - 1;
     walk_down(w, s, box, q, w->top, 0);
 }
 
-/* The next block of eight leaves, and which of them: its number is eight times that of the first. False:
- * there are no more. */
+/* The next block of eight leaves, and which of them: its number is eight times that of the first.
+ * False: there are no more. */
 INLINE bool walk_next(struct walk *w, const struct index *s, ROWS rows, __global const double *box,
                       const struct asked *q, uint *block, uint *mask)
 {
@@ -268,14 +270,6 @@ INLINE bool row_near(const struct index *s, uint axis, ulong row, double x, doub
 }
 #endif
 
-INLINE double lane(double8 v, uint l)
-{
-    double x[8];
-
-    vstore8(v, 0, x);
-    return x[l];
-}
-
 INLINE void walk_row(struct walk *w, const struct index *s, ROWS rows, const struct asked *q)
 {
     w->n = 0;
@@ -284,24 +278,24 @@ INLINE void walk_row(struct walk *w, const struct index *s, ROWS rows, const str
         return;
     }
     for (uint l = 0; l < 8; l++) {
-        const double reach = fmax(sqrt(lane(q->r2, l)), s->reach) * (1 + MARGIN);
+        const double reach = fmax(sqrt(q->r2[l]), s->reach) * (1 + MARGIN);
 
 #if DIM > 1
-        if (!row_near(s, 1, w->y, lane(q->x[1], l), reach)) {
+        if (!row_near(s, 1, w->y, q->x[1][l], reach)) {
             continue;
         }
 #endif
 #if DIM > 2
-        if (!row_near(s, 2, w->z, lane(q->x[2], l), reach)) {
+        if (!row_near(s, 2, w->z, q->x[2][l], reach)) {
             continue;
         }
 #endif
-        walk_stretch(w, s, rows, lane(q->x[0], l), lane(q->x[0], l), reach);
+        walk_stretch(w, s, rows, q->x[0][l], q->x[0][l], reach);
     }
 }
 
-INLINE void walk_begin(struct walk *w, const struct index *s, ROWS rows,
-                       __global const double *box, const struct asked *q)
+INLINE void walk_begin(struct walk *w, const struct index *s, ROWS rows, __global const double *box,
+                       const struct asked *q)
 {
     const double reach = fmax(q->reach, s->reach) * (1 + MARGIN);
 

@@ -1,5 +1,6 @@
-/* opencl/search.h -- what neighbour lists and order on a device share: points, what is known of them, the search
- * structure. The structs are those of points.cl, member for member. For lists.c, order.c, search.c alone. */
+/* opencl/search.h -- what neighbour lists and order on a device share: points, what is known of
+ * them, the search structure. The structs are those of points.cl, member for member. For lists.c,
+ * order.c, search.c alone. */
 #ifndef OPENCL_SEARCH_H
 #define OPENCL_SEARCH_H
 
@@ -102,9 +103,10 @@ int search_check(const struct search_survey *v, const char *role, struct error *
 struct grid;
 int search_cells(struct device_search *s, const struct device_cloud *c, const struct grid *g,
                  struct search_index *ix, struct error *e);
-/* Makes the structure in which sources are sought. all: what is known of them and of the destinations; factor
- * enlarges reaches; typical: reach of a destination, query: the largest of all. *p: the sources in the search's
- * order, which are s->copy, and s->order their indices, if s->own_order is then set. */
+/* Makes the structure in which sources are sought. all: what is known of them and of the
+ * destinations; factor enlarges reaches; typical: reach of a destination, query: the largest of
+ * all. *p: the sources in the search's order, which are s->copy, and s->order their indices, if
+ * s->own_order is then set. */
 int search_make(struct device_search *s, const struct device_cloud *src,
                 const struct search_survey *all, bool symmetric, double factor, double typical,
                 double query, struct search_index *ix, struct search_points *p, struct error *e);

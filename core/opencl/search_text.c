@@ -1,4 +1,5 @@
-/* opencl/search_text.c -- embeds them by the assembler, as math_text.c does its header, where it is said why. */
+/* opencl/search_text.c -- embeds them by the assembler, as math_text.c does its header, where it is
+ * said why. */
 #include "config.h"
 
 #include "opencl/search_text.h"

@@ -1,4 +1,5 @@
-/* opencl/search_text.h -- the OpenCL C of neighbour lists and of order: the texts of the .cl files beside it. */
+/* opencl/search_text.h -- the OpenCL C of neighbour lists and of order: the texts of the .cl files
+ * beside it. */
 #ifndef OPENCL_SEARCH_TEXT_H
 #define OPENCL_SEARCH_TEXT_H
 

@@ -1,5 +1,6 @@
-/* opencl/sort.c -- running sums and sorts on a device (see sort.h; the kernels are sort.cl). A processor's work
- * items take few long stretches, with digits of 11 bits, a GPU's many short ones with digits of 4. */
+/* opencl/sort.c -- running sums and sorts on a device (see sort.h; the kernels are sort.cl). A
+ * processor's work items take few long stretches, with digits of 11 bits, a GPU's many short ones
+ * with digits of 4. */
 #include "config.h"
 
 #include "opencl/sort.h"

@@ -1,5 +1,5 @@
-/* opencl/sort.cl -- sums that run along an array, and a stable sort of keys with their values. A work item takes a
- * stretch of its own; what comes out is the same for any number of them.
+/* opencl/sort.cl -- sums that run along an array, and a stable sort of keys with their values. A
+ * work item takes a stretch of its own; what comes out is the same for any number of them.
  *
  * WG: work items of a group; SORT_BITS: of a digit. */
 
@@ -30,8 +30,8 @@ static uint stretch_first(uint n, uint item, uint items)
     return (uint)((ulong)n * item / items);
 }
 
-/* One group does it all: out[i] = total[slot] + in[0] + ... in[i - 1], likewise out[n]; total[slot + 1] is the sum
- * with all 64 bits. */
+/* One group does it all: out[i] = total[slot] + in[0] + ... in[i - 1], likewise out[n]; total[slot
+ * + 1] is the sum with all 64 bits. */
 KERNEL void scan_whole(__global const uint *in, uint in_at, uint n, __global uint *out, uint out_at,
                        __global ulong *total, uint slot)
 {
@@ -129,8 +129,8 @@ KERNEL void scan_out(__global const uint *in, uint in_at, uint n, uint each,
 
 /* -- A digit -------- */
 
-/* count[digit * stretches + stretch]: how many keys of a stretch have the digit; then, as running sums, where
- * they go. */
+/* count[digit * stretches + stretch]: how many keys of a stretch have the digit; then, as running
+ * sums, where they go. */
 #define SORT(KEY)                                                                                  \
     KERNEL void sort_count_##KEY(__global const KEY *key, uint n, uint each, uint stretches,       \
                                  uint shift, __global uint *count)                                 \

@@ -170,7 +170,9 @@ SPH_FN(R, sph_ipow_, (R a, uint n))
 }
 
 /* A kernel's table at one place (sph_kernel_cubic in sph/kernel-value.h); slope: 0 or 1. */
-SPH_FN(T, sph_cell_, (__global const double *table, T at, double support, double cells, uint n, double norm, int slope))
+SPH_FN(T, sph_cell_,
+       (__global const double *table, T at, double support, double cells, uint n, double norm,
+        int slope))
 {
     const double q = at;
     if (!(q >= 0.0 && q < support))
@@ -240,10 +242,6 @@ SPH_FN(void, sph_store_, (__global double *p, SPH_D a, uint lanes))
 #endif
     SPH_STORE(a, p);
 }
-SPH_FN(void, sph_start_, (__global double *p, double a, uint lanes))
-{
-    SPH_OF_ISA(sph_store_)(p, (SPH_D)a, lanes);
-}
 SPH_FN(void, sph_sum_, (__global double *p, R a, uint lanes))
 {
     SPH_OF_ISA(sph_store_)(p, SPH_LOAD(p) + SPH_D_OF(a), lanes);
@@ -307,7 +305,6 @@ SPH_FN(B, sph_others_, (B number, uint j))
     return number != (B)(SPH_INT)j;
 }
 #define sph_load(p) SPH_OF_ISA(sph_load_)(p)
-#define sph_start(p, a, lanes) SPH_OF_ISA(sph_start_)((p), (a), (lanes))
 #define sph_sum(p, a, lanes) SPH_OF_ISA(sph_sum_)((p), (a), (lanes))
 #define sph_least(p, a, lanes) SPH_OF_ISA(sph_least_)((p), (a), (lanes))
 #define sph_most(p, a, lanes) SPH_OF_ISA(sph_most_)((p), (a), (lanes))

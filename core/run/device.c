@@ -8,7 +8,6 @@
 #include "run/watch.h"
 
 #include <math.h>
-#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -71,7 +70,10 @@ int run_device_open(struct run *r, struct error *e)
         if (arena_init(&d->arena[a], d->d, &plan->array[a].p, e) ||
             (plan->array[a].p.n && arena_room(&d->arena[a], plan_ghosts(plan, a), e)))
             return -1;
-    return kernels_make(&d->kernels, d->d, plan, d->arena, d->stage, d->first[MOMENT_COUNT], e);
+    return run_device_cost_open(r, e) || kernels_make(&d->kernels, d->d, plan, d->arena, d->stage,
+                                                      d->first[MOMENT_COUNT], e)
+               ? -1
+               : 0;
 }
 
 void run_device_close(struct run *r)
@@ -82,6 +84,7 @@ void run_device_close(struct run *r)
     if (!d)
         return;
     kernels_free(d->kernels);
+    run_device_cost_close(r);
     for (size_t k = 0; d->list && k < r->plan->n_list; k++)
         device_list_release(d->d, &d->list[k]);
     for (size_t k = 0; d->skin && d->ops && k < n * r->plan->n_frame; k++)
@@ -220,22 +223,6 @@ static void mark_written(struct run *r, const struct stage *s)
     }
 }
 
-/* `part` of the destinations took part. */
-static void count_pairs(struct run *r, const struct stage *s, double part)
-{
-    for (size_t k = 0; k < s->n; k++) {
-        struct pass *p = &r->plan->pass[s->pass[k]];
-        p->sweeps++;
-        for (size_t q = 0; p->shape == SPH_PAIR && q < p->n_src; q++) {
-            const struct device_list *list = &r->device->list[p->list[q]];
-            const uint64_t pairs =
-                (uint64_t)(part * r->device->share[p->list[q]] * (double)list->n_entry);
-            p->pairs += pairs;
-            r->cost.pairs += pairs;
-        }
-    }
-}
-
 static bool has_pairs(const struct run *r, const struct stage *s)
 {
     return s->n_head < s->n && r->plan->pass[s->pass[s->n_head]].shape == SPH_PAIR;
@@ -266,11 +253,15 @@ static int sweep(struct run *r, size_t k, uint32_t number, struct error *e)
                                    .quantum = r->quantum,
                                    .uniform_h = is_uniform(r),
                                    .sweep = number};
-    if (make_ready(r, s, e) ||
-        kernels_launch(r->device->kernels, k, r->device->arena, r->device->list, &now, e))
+    if (make_ready(r, s, e))
         return -1;
+    const size_t before = device_span(r->device->d, SPAN_STAGES + 2 * k);
+    const int status =
+        kernels_launch(r->device->kernels, k, r->device->arena, r->device->list, &now, e);
+    device_span(r->device->d, before);
+    r->device->work[k].sweeps++;
     mark_written(r, s);
-    return 0;
+    return status;
 }
 
 /* Sweeps until none of its destinations asks for another. */
@@ -285,7 +276,7 @@ static int iterate(struct run *r, size_t k, struct error *e)
     for (uint32_t number = 0; busy > 0; number++) {
         if (sweep(r, k, number, e))
             return -1;
-        count_pairs(r, s, (double)busy / (double)all);
+        run_device_count(r, k, (double)busy / (double)all);
         if (look_groups(r->device->look, arena, p->unfinished, &busy, e))
             return -1;
         if (number + 1 >= p->max_sweeps) {
@@ -356,19 +347,16 @@ static int prepare(struct run *r, const struct stage *s, struct error *e)
 static int run_stage(struct run *r, size_t k, struct error *e)
 {
     const struct stage *s = &r->device->stage[k];
-    const double begin = omp_get_wtime(), other = r->cost.neighbour;
+    const size_t before = device_span(r->device->d, SPAN_STAGES + 2 * k + 1);
     int status = prepare(r, s, e);
 
     if (!status && r->device->arena[s->array].n > 0) {
         status = s->iterates ? iterate(r, k, e) : sweep(r, k, 0, e);
         if (!status && !s->iterates)
-            count_pairs(r, s, 1.0);
+            run_device_count(r, k, 1.0);
     }
-    if (!status)
-        status = begin_reductions(r, s, e);
-    /* Of a stage the first pass has the time: what each takes by itself nobody can tell. */
-    r->plan->pass[s->pass[0]].seconds += omp_get_wtime() - begin - (r->cost.neighbour - other);
-    return status;
+    device_span(r->device->d, before);
+    return status ? status : begin_reductions(r, s, e);
 }
 
 /* -- What went wrong -------- */
@@ -461,11 +449,7 @@ static int failed_bodies(struct run *r, struct error *e)
 {
     bool failed = false;
 
-    if (kernels_failed(r->device->kernels, &failed, e) == 0)
-        return 0;
-    if (failed) /* a sentence of the plugin's: where and when is the host's to say */
-        error_prefix(e, "step %llu, t = %g", (unsigned long long)r->step, r->time);
-    return -1;
+    return kernels_failed(r->device->kernels, &failed, e) || failed ? -1 : 0;
 }
 
 int run_device_passes(struct run *r, enum moment moment, struct error *e)
@@ -527,16 +511,16 @@ static int advance_array(struct run *r, size_t array, size_t from, size_t to, st
 
 int run_device_advance(struct run *r, size_t from, size_t to, struct error *e)
 {
-    const double begin = omp_get_wtime();
+    const size_t before = device_span(r->device->d, SPAN_INTEGRATE);
+    int status = 0;
 
-    for (size_t a = 0; a < r->plan->n_array; a++)
-        if (r->plan->array[a].n_rate && r->device->arena[a].n > 0 &&
-            advance_array(r, a, from, to, e))
-            return -1;
+    for (size_t a = 0; !status && a < r->plan->n_array; a++)
+        if (r->plan->array[a].n_rate && r->device->arena[a].n > 0)
+            status = advance_array(r, a, from, to, e);
+    device_span(r->device->d, before);
     r->left = 0;
     r->lists_suspect = true;
-    r->cost.integrate += omp_get_wtime() - begin;
-    return 0;
+    return status;
 }
 
 /* -- Totals -------- */

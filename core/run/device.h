@@ -7,7 +7,20 @@
 #include "opencl/kernels.h"
 #include "opencl/look.h"
 #include "opencl/ops.h"
+#include "opencl/stage_cost.h"
 #include "run/run.h"
+
+/* What the device's time is counted to (device_span): the rest (reductions, looks, output); lists, ghosts, order;
+ * the integrator; of each stage its kernels and, one further, what they had to have made first. */
+enum { SPAN_REST, SPAN_LISTS, SPAN_INTEGRATE, SPAN_STAGES };
+
+/* A stage's, so far. */
+struct device_work {
+    struct stage_cost cost;
+    uint64_t pairs; /* as cost.pairs: once for each pass */
+    uint64_t sweeps;
+    double flops, bytes;
+};
 
 struct run_device {
     struct device *d;
@@ -24,6 +37,8 @@ struct run_device {
     double *share;             /* [plan->n_list]: true pairs per entry, when last counted */
     uint32_t *slot; /* [reduction]: where its result will be; NO_SLOT: nothing is on its way */
     uint32_t n_slot;
+    struct device_work *work; /* [stage] */
+    double *told;             /* [span]: seconds that are in the run's costs already */
 };
 #define NO_SLOT UINT32_MAX
 
@@ -54,6 +69,19 @@ static inline void run_device_changed(struct run *r, size_t array, int column)
     r->stale[array][column] = r->device->ghosts[array].n > 0;
     r->mirror_old[array][column] = MIRROR_OLD;
 }
+/* device_cost.c. Of each stage; `part` of its destinations took part in a sweep. */
+int run_device_cost_open(struct run *r, struct error *e);
+void run_device_cost_close(struct run *r);
+void run_device_count(struct run *r, size_t stage, double part);
+/* The pass that has a stage's time: the first that sweeps, or else the first. What each takes by itself nobody can
+ * tell. */
+struct pass *run_device_timed(const struct run *r, const struct stage *s);
+/* Brings the run's costs and its passes' seconds up to date; waits. */
+void run_device_costs(struct run *r);
+struct run_memory run_device_memory(const struct run *r);
+/* device_report.c: "device" of summary.json; "pass_in": passes and those that have their time. NULL: no memory. */
+cJSON *run_device_report(struct run *r);
+cJSON *run_device_shared(const struct run *r);
 /* What reductions that are on their way came to, and what kernels have found wrong. Waits for the device. */
 int run_device_collect(struct run *r, struct error *e);
 

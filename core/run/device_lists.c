@@ -6,7 +6,6 @@
 #include "run/watch.h"
 
 #include <math.h>
-#include <omp.h>
 #include <string.h>
 
 /* As on the host: lists are made so often between two sorts. */
@@ -365,15 +364,12 @@ static int freeze(struct run *r, size_t frame, struct error *e)
     return 0;
 }
 
-int run_device_frame(struct run *r, size_t frame, struct error *e)
+static int frame_lists(struct run *r, size_t frame, struct error *e)
 {
     const bool frozen = r->plan->frame[frame].frozen;
-    const double begin = omp_get_wtime();
     bool right = false;
     int status;
 
-    if (frame == 0)
-        return 0;
     if (places_here(r, frame, e))
         return -1;
     if (r->frame_made[frame] && !frozen && holds(r, frame, &right, e))
@@ -385,7 +381,16 @@ int run_device_frame(struct run *r, size_t frame, struct error *e)
     status = make_frame(r, frame, true, e);
     r->frame_made[frame] = !status;
     r->cost.list_builds++;
-    r->cost.neighbour += omp_get_wtime() - begin;
+    return status;
+}
+
+int run_device_frame(struct run *r, size_t frame, struct error *e)
+{
+    if (frame == 0)
+        return 0;
+    const size_t before = device_span(r->device->d, SPAN_LISTS);
+    const int status = frame_lists(r, frame, e);
+    device_span(r->device->d, before);
     return status;
 }
 
@@ -401,9 +406,8 @@ static int build(struct run *r, bool within, struct error *e)
     return make_frame(r, 0, sorts || !r->lists_made, e);
 }
 
-int run_device_lists(struct run *r, bool within, struct error *e)
+static int lists(struct run *r, bool within, struct error *e)
 {
-    const double begin = omp_get_wtime();
     bool right = false;
     int status = places_here(r, 0, e);
 
@@ -417,7 +421,14 @@ int run_device_lists(struct run *r, bool within, struct error *e)
         r->cost.list_builds++;
     }
     r->lists_suspect = false;
-    r->cost.neighbour += omp_get_wtime() - begin;
+    return status;
+}
+
+int run_device_lists(struct run *r, bool within, struct error *e)
+{
+    const size_t before = device_span(r->device->d, SPAN_LISTS);
+    const int status = lists(r, within, e);
+    device_span(r->device->d, before);
     return status;
 }
 
@@ -426,6 +437,10 @@ int run_device_refresh(struct run *r, size_t array, int column, struct error *e)
     if (!r->stale[array][column])
         return 0;
     r->stale[array][column] = false;
-    return ops_ghosts_refresh(r->device->ops, &r->device->arena[array], &r->device->ghosts[array],
-                              &r->plan->scene->box, column, e);
+    const size_t before = device_span(r->device->d, SPAN_LISTS);
+    const int status =
+        ops_ghosts_refresh(r->device->ops, &r->device->arena[array], &r->device->ghosts[array],
+                           &r->plan->scene->box, column, e);
+    device_span(r->device->d, before);
+    return status;
 }

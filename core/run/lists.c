@@ -1,5 +1,6 @@
 /* run/lists.c -- neighbour lists and ghosts of a run: made when they are no longer right, reused until then.
  * Everything is decided by displacements and counters, never by time, so that a run repeats itself. */
+#include "run/device.h"
 #include "run/watch.h"
 
 #include "neighbours/range.h"
@@ -408,6 +409,8 @@ void run_refresh(struct run *r, size_t array, int column)
 
 struct run_memory run_memory(const struct run *r)
 {
+    if (r->device)
+        return run_device_memory(r);
     struct run_memory m = {0};
     const size_t n = r->plan->n_array;
     for (size_t k = 0; k < r->plan->n_list; k++) {

@@ -3,6 +3,7 @@
 #include "io/render.h"
 #include "io/snapshot.h"
 #include "io/summary.h"
+#include "run/device.h"
 #include "run/loop_state.h"
 #include "run/watch.h"
 #include <omp.h>
@@ -64,7 +65,7 @@ struct summary_parts {
     struct summary_plugin *plugin;
     struct summary_watch watch[WATCH_CAUSES], failure;
     size_t n_watch;
-    cJSON *plan;
+    cJSON *plan, *device, *shared; /* of a run on a device, or NULL */
 };
 
 static void parts_free(struct summary_parts *q)
@@ -74,11 +75,18 @@ static void parts_free(struct summary_parts *q)
     free(q->pass);
     free(q->plugin);
     cJSON_Delete(q->plan);
+    cJSON_Delete(q->device);
+    cJSON_Delete(q->shared);
 }
 
-static int parts_make(const struct loop *l, struct summary_parts *q, struct error *e)
+static int parts_make(struct loop *l, struct summary_parts *q, struct error *e)
 {
     const struct plan *plan = l->run.plan;
+    if (l->run.device) {
+        run_device_costs(&l->run);
+        q->device = run_device_report(&l->run);
+        q->shared = run_device_shared(&l->run);
+    }
     q->name = calloc(plan->n_array + 1, sizeof *q->name);
     q->count = calloc(plan->n_array + 1, sizeof *q->count);
     q->pass = calloc(plan->n_pass + 1, sizeof *q->pass);
@@ -183,6 +191,8 @@ int loop_summarise(struct loop *l, const char *status, const char *reason, struc
                         .pass = q.pass,
                         .n_pass = r->plan->n_pass,
                         .plan = q.plan,
+                        .device = q.device,
+                        .shared = q.shared,
                         .plugin = q.plugin,
                         .n_plugin = r->plan->registry->n_plugin,
                         .threads = r->threads,

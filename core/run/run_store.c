@@ -211,6 +211,8 @@ static int states_store(struct run *r, struct store *s, struct error *e)
 
 int run_store(struct run *r, struct store *s, struct error *e)
 {
+    if (r->device && !s->reading)
+        run_device_costs(r);
     return numbers_store(r, s, e) || tables_store(r, s, e) || costs_store(r, s, e) ||
                    arrays_store(r, s, e) || (r->device ? run_device_store : lists_store)(r, s, e) ||
                    watch_store(r, s, e) || states_store(r, s, e)
@@ -220,6 +222,8 @@ int run_store(struct run *r, struct store *s, struct error *e)
 
 int run_store_failed(struct run *r, struct store *s, struct error *e)
 {
+    if (r->device && !s->reading)
+        run_device_costs(r);
     int status = numbers_store(r, s, e) || tables_store(r, s, e) || costs_store(r, s, e) ||
                          (r->watch && watch_store(r, s, e))
                      ? -1

@@ -101,14 +101,15 @@ bool scene_is_taken(const char *name, bool side)
 {
     static const char *const sides[] = {"h", "hinv"}; /* h_i, hinv_j */
     static const char *const words[] = {
-        "b",      "dx",     "h",       "h_i",      "h_j",      "hinv_i", "hinv_j",  "in",
-        "r",      "r2",     "rinv",    "B",        "DIM",      "K",      "M",       "R",
-        "T",      "auto",   "bool",    "break",    "case",     "char",   "const",   "constant",
-        "do",     "double", "else",    "float",    "for",      "global", "half",    "if",
-        "inline", "int",    "kernel",  "local",    "long",     "main",   "private", "restrict",
-        "return", "short",  "signed",  "sizeof",   "static",   "struct", "switch",  "typedef",
-        "uchar",  "uint",   "ulong",   "unsigned", "ushort",   "union",  "void",    "volatile",
-        "while",  "goto",   "default", "continue", "register", "extern", "enum"};
+        "b",       "dx",       "h",      "h_i",    "h_j",     "hinv_i",   "hinv_j",   "in",
+        "r",       "r2",       "rinv",   "B",      "DIM",     "K",        "M",        "R",
+        "T",       "FORM",     "INT",    "auto",   "bool",    "break",    "case",     "char",
+        "const",   "constant", "do",     "double", "else",    "float",    "for",      "global",
+        "half",    "if",       "inline", "int",    "kernel",  "local",    "long",     "main",
+        "private", "restrict", "return", "short",  "signed",  "sizeof",   "static",   "struct",
+        "switch",  "typedef",  "uchar",  "uint",   "ulong",   "unsigned", "ushort",   "union",
+        "void",    "volatile", "while",  "goto",   "default", "continue", "register", "extern",
+        "enum"};
     const char *const *known = side ? sides : words;
     for (size_t i = 0; i < (side ? COUNT(sides) : COUNT(words)); i++)
         if (!strcmp(name, known[i]))
@@ -170,15 +171,31 @@ static int compile_list(struct scene *s, const cJSON *node, enum scene_list list
     return 0;
 }
 
+/* Behind the comment that begins at `at`; `at` itself if none does. */
+static const char *skip_comment(const char *at)
+{
+    const char *end = at[0] != '/'   ? NULL
+                      : at[1] == '*' ? strstr(at + 2, "*/")
+                      : at[1] == '/' ? strchr(at, '\n')
+                                     : NULL;
+    if (at[0] == '/' && (at[1] == '*' || at[1] == '/'))
+        return end ? end + (at[1] == '*' ? 2 : 1) : at + strlen(at);
+    return at;
+}
+
 bool scene_body_uses(const struct scene_body *b, const char *name)
 {
-    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
-    const size_t n = strlen(name);
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ_0123456789";
+    const size_t length = strlen(name);
     if (b->prelude || strstr(b->text, "##"))
         return true;
-    for (const char *at = b->text; (at = strstr(at, name)) != NULL; at += n)
-        if ((at == b->text || !strchr(letters, at[-1])) && (!at[n] || !strchr(letters, at[n])))
+    for (const char *at = b->text; *at;) {
+        const char *behind = skip_comment(at);
+        const size_t n = strspn(at, letters);
+        if (n == length && strncmp(at, name, n) == 0)
             return true;
+        at = behind > at ? behind : at + (n ? n : 1);
+    }
     return false;
 }
 

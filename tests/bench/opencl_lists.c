@@ -1,5 +1,6 @@
-/* tests/bench/opencl_lists.c -- what neighbour lists and order cost on an OpenCL device beside the host, in one run:
- * for each of them the least of several times, host and device in turns, wall clock on all threads. */
+/* tests/bench/opencl_lists.c -- what neighbour lists and order cost on an OpenCL device beside the
+ * host, in one run: for each of them the least of several times, host and device in turns; wall
+ * clock, and processor time of all threads, which others on the machine change less. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -18,12 +19,26 @@
 static struct device *device;
 static struct error e;
 
-static double now(void)
+/* Wall clock, processor time. */
+struct times {
+    double wall, cpu;
+};
+
+static struct times now(void)
 {
     struct timespec t;
 
     timespec_get(&t, TIME_UTC);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+    return (struct times){(double)t.tv_sec + 1e-9 * (double)t.tv_nsec,
+                          (double)clock() / CLOCKS_PER_SEC};
+}
+
+static void take_least(struct times *least, struct times begin)
+{
+    const struct times end = now();
+
+    least->wall = fmin(least->wall, end.wall - begin.wall);
+    least->cpu = fmin(least->cpu, end.cpu - begin.cpu);
 }
 
 static void must(int status)
@@ -34,54 +49,45 @@ static void must(int status)
     }
 }
 
-static double least(double a, double b)
-{
-    return a < b ? a : b;
-}
+#define HEAD "wall: host    device     ratio   processor: host    device     ratio"
 
-static void kernels(void)
+static void show(const struct times *host, const struct times *dev, size_t n)
 {
-    static double before[256];
-    size_t n;
-    const struct device_time *t = device_times(device, &n);
+    const double per = 1e9 / (double)n;
 
-    for (size_t k = 0; k < n && getenv("KERNELS"); k++) {
-        printf("      %-20s %8.3f ms, %llu launches\n", t[k].name, 1e3 * (t[k].seconds - before[k]),
-               (unsigned long long)t[k].launches);
-        before[k] = t[k].seconds;
-    }
+    printf("%10.1f %9.1f %9.2f %17.1f %9.1f %9.2f", per * host->wall, per * dev->wall,
+           dev->wall / host->wall, per * host->cpu, per * dev->cpu, dev->cpu / host->cpu);
 }
 
 static void lists(const char *name, struct owned *o, bool symmetric)
 {
     const struct neighbour_manager *m;
     struct there t = cloud_there(device, &o->c, NULL, 0);
-    const double per = 1e9 / (double)o->c.n;
 
     t.c.wide = &t.wide;
     printf("%s, %s: %zu particles, ns each\n", name, symmetric ? "symmetric" : "gather", o->c.n);
-    printf("  manager       host    device     ratio   entries/group: host   device\n");
+    printf("  manager   " HEAD "   entries/group\n");
     for (size_t k = 0; (m = neighbour_manager_at(k)) != NULL; k++) {
         struct group_list l = {0};
         struct device_list there = {.n_group = 0};
         struct device_search *s;
-        double host = 1e9, dev = 1e9;
+        struct times host = {1e9, 1e9}, dev = host;
 
         must(device_search_open(&s, device, o->c.dim, m, &e));
         for (int round = 0; round < ROUNDS; round++) {
-            double begin = now();
+            struct times begin = now();
 
             must(group_list_make(&l, &o->c, &o->c, symmetric, SKIN, m, omp_get_max_threads(), &e));
-            host = least(host, now() - begin);
+            take_least(&host, begin);
             begin = now();
             must(device_list_make(s, &there, &t.c, &t.c, symmetric, SKIN, false, 0, &e));
             must(device_finish(device, &e));
-            dev = least(dev, now() - begin);
+            take_least(&dev, begin);
         }
-        printf("  %-8s %9.1f %9.1f %9.2f   %19.1f %8.1f\n", m->name, per * host, per * dev,
-               dev / host, (double)l.n_entry / (double)l.n_group,
+        printf("  %-9s", m->name);
+        show(&host, &dev, o->c.n);
+        printf("   %.1f %.1f\n", (double)l.n_entry / (double)l.n_group,
                (double)there.n_entry / (double)there.n_group);
-        kernels();
         group_list_fini(&l);
         device_list_release(device, &there);
         device_search_close(s);
@@ -93,10 +99,9 @@ static void order(const char *name, struct owned *o)
 {
     uint32_t *to = malloc(o->c.n * sizeof *to);
     int64_t *id = malloc(o->c.n * sizeof *id);
-    const double per = 1e9 / (double)o->c.n;
     struct device_buffer there = {0};
     struct device_search *s;
-    double host = 1e9, dev = 1e9;
+    struct times host = {1e9, 1e9}, dev = host;
     struct there t;
 
     for (size_t i = 0; i < o->c.n; i++) {
@@ -106,17 +111,18 @@ static void order(const char *name, struct owned *o)
     t.c.wide = &t.wide;
     must(device_search_open(&s, device, o->c.dim, NULL, &e));
     for (int round = 0; round < ROUNDS; round++) {
-        double begin = now();
+        struct times begin = now();
 
         must(cell_order(&o->c, id, cell_best(&o->c), omp_get_max_threads(), to, &e));
-        host = least(host, now() - begin);
+        take_least(&host, begin);
         begin = now();
         must(device_order(s, &t.c, 0, &there, &e));
         must(device_finish(device, &e));
-        dev = least(dev, now() - begin);
+        take_least(&dev, begin);
     }
-    printf("%-22s order %9.1f %9.1f %9.2f\n", name, per * host, per * dev, dev / host);
-    kernels();
+    printf("%s: order, %zu particles, ns each\n            " HEAD "\n  %-9s", name, o->c.n, "");
+    show(&host, &dev, o->c.n);
+    printf("\n");
     device_search_close(s);
     device_release(device, &there);
     device_release(device, &t.wide);
@@ -126,6 +132,7 @@ static void order(const char *name, struct owned *o)
 
 static void cloud(const char *name, struct owned o)
 {
+    cloud_shuffle(&o, 5);
     order(name, &o);
     cloud_sort(&o, cell_best(&o.c));
     order(name, &o);
@@ -145,6 +152,7 @@ int main(void)
     cloud("2D lattice", cloud_lattice(2, 600, 1));
     cloud("3D lattice", cloud_lattice(3, 63, 1));
     cloud("3D clump", cloud_clump(3, 58, 1));
+    printf("programs: %.1f s to build\n", device_build_seconds(device, NULL, NULL));
     device_close(device);
     return 0;
 }

@@ -73,7 +73,7 @@ done
 is 'magma' render --map = m
 is 'magma' render --map m
 has coolwarm render --map =
-is cpu --device ''
+is 'cpu opencl opencl:0 opencl:1' --device ''
 is '' --steps ''
 is latest --resume = la
 is results/checkpoint_00000010.h5 --resume = results/c

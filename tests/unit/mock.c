@@ -78,6 +78,28 @@ static sph_list one_value(int k, const char *name, uint32_t index, uint32_t type
     return (sph_list){&mock.value[k], 1, sizeof(mock.value[k])};
 }
 
+static sph_list one_at(int k, const char *name, uint32_t index, uint32_t type)
+{
+    mock.at[k] = (sph_device_value){name, index, type};
+    return (sph_list){&mock.at[k], 1, sizeof(mock.at[k])};
+}
+
+/* rho, read, is index 0; p, written, 1; again, an int32 that is written, 2: to be read as well it needs
+ * another access. */
+static void reset_point(void)
+{
+    mock.fail[0] = "thing: no";
+    mock.point = (sph_device_point){.size = sizeof(sph_device_point),
+                                    .text = "p = gamma * rho;",
+                                    .file = "finish.body.h",
+                                    .in = one_at(0, "rho", 0, SPH_SCALAR),
+                                    .out = one_at(1, "p", 1, SPH_SCALAR),
+                                    .inout = one_at(2, "again", 2, SPH_INT32),
+                                    .param = one_at(3, "gamma", 0, 0),
+                                    .state = one_at(4, "own", 3, 0),
+                                    .fail = LIST_OF(mock.fail)};
+}
+
 /* A pair function of its own: rho, read on both sides, is index 0; p, written, index 1. */
 static void reset_device(void)
 {
@@ -99,6 +121,7 @@ void mock_reset(enum kind kind)
     mock.kind = kind;
     reset_items();
     reset_device();
+    reset_point();
     mock.rate[0] = (sph_rate){"u", "p", SPH_KICK, 0};
     mock.reduction[0] = (sph_reduction){"least", "rho", SPH_REDUCE_MIN, SPH_USE_TIME_STEP};
     mock.step[0] = (sph_step)SPH_STEP(SPH_AT_EVALUATE, "thing");
@@ -115,8 +138,12 @@ void mock_reset(enum kind kind)
                                    .unfinished = "again",
                                    .rates = LIST_OF(mock.rate),
                                    .reductions = LIST_OF(mock.reduction)};
-    mock.eos = (sph_eos){sizeof(sph_eos),           0, &mock.item, &mock.life, work, work,
-                         LIST_OF(mock.inverse_prop)};
+    mock.eos = (sph_eos){.size = sizeof(sph_eos),
+                         .item = &mock.item,
+                         .life = &mock.life,
+                         .run = work,
+                         .inverse = work,
+                         .inverse_props = LIST_OF(mock.inverse_prop)};
     mock.boundary = (sph_boundary){sizeof(sph_boundary), 0, &mock.plain_item, LIST_OF(mock.step)};
     mock.kernel = (sph_kernel){
         .size = sizeof(sph_kernel),

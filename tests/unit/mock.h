@@ -18,6 +18,9 @@ extern struct mock {
     sph_life life;
     sph_device_value value[6]; /* i, j, sum, min, max, param */
     sph_device_body device;    /* of the function, where `function.device` is set to it */
+    sph_device_value at[5];    /* in, out, inout, param, state */
+    const char *fail[1];
+    sph_device_point point; /* of the function or the equation of state, where it is set */
     sph_function function;
     sph_eos eos;
     sph_boundary boundary;

@@ -1,5 +1,5 @@
-/* on_device.h -- for tests and measurements: a scene's passes natively and on a device, on the same particles. No
- * cmocka in here. */
+/* on_device.h -- for tests and measurements: a scene's passes natively and on a device, on the same
+ * particles. No cmocka in here. */
 #ifndef TESTS_UNIT_ON_DEVICE_H
 #define TESTS_UNIT_ON_DEVICE_H
 
@@ -25,8 +25,9 @@ struct on_device {
 
 /* Whether there is a device with double precision, and which. */
 bool on_device_there(size_t *number, struct error *e);
-/* A scene (JSON with ' in place of ") made, filled, and evaluated once natively; the stages of an evaluation built
- * for the device: with vectors, or a work item a destination. on_device_close in any case. */
+/* A scene (JSON with ' in place of ") made, filled, and evaluated once natively; the stages of an
+ * evaluation built for the device: with vectors, or a work item a destination. on_device_close in
+ * any case. */
 struct on_device_as {
     const char *scene, *precision;
     int threads;
@@ -40,8 +41,8 @@ void on_device_close(struct on_device *o);
 int on_device_put(struct on_device *o, struct error *e);
 /* All columns come back to the host: real particles; ghosts and mirrors are old. */
 int on_device_fetch(struct on_device *o, struct error *e);
-/* A stage of the evaluation there, until nobody asks for another sweep; all of them, by way of the host, which
- * refreshes ghosts and mirrors in between. */
+/* A stage of the evaluation there, until nobody asks for another sweep; all of them, by way of the
+ * host, which refreshes ghosts and mirrors in between. */
 int on_device_stage(struct on_device *o, size_t k, struct error *e);
 int on_device_run(struct on_device *o, struct error *e);
 struct kernel_now on_device_now(const struct on_device *o);

@@ -55,6 +55,15 @@ const struct shape shape_device = {
      TO(sph_device_body, LIST, i, shape_value), TO(sph_device_body, LIST, j, shape_value),
      TO(sph_device_body, LIST, sum, shape_value), TO(sph_device_body, LIST, min, shape_value),
      TO(sph_device_body, LIST, max, shape_value), TO(sph_device_body, LIST, param, shape_value)}};
+static const struct shape shape_sentence = {sizeof(const char *), {{TEXT, 0, NULL}}};
+const struct shape shape_point = {
+    sizeof(sph_device_point),
+    {M(sph_device_point, SIZE, size), M(sph_device_point, WORD, h), M(sph_device_point, TEXT, text),
+     M(sph_device_point, TEXT, file), M(sph_device_point, TEXT, prelude),
+     M(sph_device_point, TEXT, prelude_file), TO(sph_device_point, LIST, in, shape_value),
+     TO(sph_device_point, LIST, out, shape_value), TO(sph_device_point, LIST, inout, shape_value),
+     TO(sph_device_point, LIST, param, shape_value), TO(sph_device_point, LIST, state, shape_value),
+     TO(sph_device_point, LIST, fail, shape_sentence)}};
 const struct shape shape_function = {
     sizeof(sph_function),
     {M(sph_function, SIZE, size), M(sph_function, WORD, shape),
@@ -63,12 +72,15 @@ const struct shape shape_function = {
      M(sph_function, WORD, reach), M(sph_function, WORD, max_sweeps),
      M(sph_function, TEXT, unfinished), M(sph_function, REAL, reach_scale),
      TO(sph_function, LIST, rates, shape_rate), TO(sph_function, LIST, reductions, shape_reduction),
-     TO(sph_function, LINK, device, shape_device), M(sph_function, CODE, prepare)}};
-const struct shape shape_eos = {sizeof(sph_eos),
-                                {M(sph_eos, SIZE, size), TO(sph_eos, LINK, item, shape_item),
-                                 TO(sph_eos, LINK, life, shape_life), M(sph_eos, CODE, run),
-                                 M(sph_eos, CODE, inverse),
-                                 TO(sph_eos, LIST, inverse_props, shape_prop)}};
+     TO(sph_function, LINK, device, shape_device), M(sph_function, CODE, prepare),
+     TO(sph_function, LINK, device_run, shape_point),
+     TO(sph_function, LINK, device_before, shape_point),
+     TO(sph_function, LINK, device_after, shape_point)}};
+const struct shape shape_eos = {
+    sizeof(sph_eos),
+    {M(sph_eos, SIZE, size), TO(sph_eos, LINK, item, shape_item),
+     TO(sph_eos, LINK, life, shape_life), M(sph_eos, CODE, run), M(sph_eos, CODE, inverse),
+     TO(sph_eos, LIST, inverse_props, shape_prop), TO(sph_eos, LINK, device, shape_point)}};
 const struct shape shape_boundary = {sizeof(sph_boundary),
                                      {M(sph_boundary, SIZE, size),
                                       TO(sph_boundary, LINK, item, shape_item),

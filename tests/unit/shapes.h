@@ -20,8 +20,8 @@ struct shape {
 };
 
 extern const struct shape shape_param, shape_prop, shape_rate, shape_reduction, shape_step,
-    shape_term, shape_item, shape_life, shape_value, shape_device, shape_function, shape_eos,
-    shape_boundary, shape_kernel, shape_scheme, shape_exact, shape_plugin, shape_population,
-    shape_state;
+    shape_term, shape_item, shape_life, shape_value, shape_device, shape_point, shape_function,
+    shape_eos, shape_boundary, shape_kernel, shape_scheme, shape_exact, shape_plugin,
+    shape_population, shape_state;
 
 #endif

@@ -38,6 +38,27 @@ static void add_device(void)
     mock.prop[0].access = SPH_DST_READ | SPH_SRC_READ;
 }
 
+/* The function gets a body for devices of `after`: `again` is then read too. */
+static bool with_point;
+
+static sph_status create_nothing(const sph_host *host, const sph_config *config, uint32_t dim,
+                                 void **out)
+{
+    (void)host;
+    (void)config;
+    (void)dim;
+    (void)out;
+    return SPH_OK;
+}
+
+static void add_point(void)
+{
+    mock.function.after = mock.function.run;
+    mock.function.device_after = &mock.point;
+    mock.life.create = create_nothing;
+    mock.prop[2].access = SPH_DST_UPDATE;
+}
+
 static void each_is_refused(const struct slip *slips, size_t n)
 {
     for (size_t i = 0; i < n; i++) {
@@ -45,6 +66,8 @@ static void each_is_refused(const struct slip *slips, size_t n)
         mock_reset(slips[i].kind);
         if (with_device)
             add_device();
+        if (with_point)
+            add_point();
         if (slips[i].number)
             *slips[i].number = slips[i].value;
         if (slips[i].real)
@@ -246,6 +269,94 @@ static void device_bodies(void **state)
     mock.function.shape = SPH_POINT;
     assert_non_null(strstr(mock_refusal(), "\"thing\": device is set, but the shape is not pair"));
     with_device = false;
+}
+
+static void bodies_of_points(void **state)
+{
+    const struct slip slips[] = {
+        {KIND_FUNCTION, "size of the device_after is 8 bytes", NUMBER(mock.point.size, 8)},
+        {KIND_FUNCTION, "h of device_after is 2, neither 0 nor 1", NUMBER(mock.point.h, 2)},
+        {KIND_FUNCTION, "text of device_after is missing", TEXT(mock.point.text, "")},
+        {KIND_FUNCTION, "file of device_after's text is missing", TEXT(mock.point.file, NULL)},
+        {KIND_FUNCTION, "file of device_after's prelude is missing",
+         TEXT(mock.point.prelude, "#define A")},
+        {KIND_FUNCTION, "in[0] of device_after has no name", TEXT(mock.at[0].name, "sph_w")},
+        {KIND_FUNCTION, "state[0] of device_after has no name", TEXT(mock.at[4].name, "1a")},
+        {KIND_FUNCTION, "lists of device_after name \"rho\" twice", TEXT(mock.at[3].name, "rho")},
+        {KIND_FUNCTION, "in of device_after: \"rho\" is property 3, but 3 are declared",
+         NUMBER(mock.at[0].index, 3)},
+        {KIND_FUNCTION,
+         "inout of device_after: type of \"again\" is 1, that of the property "
+         "\"again\" 5; it must be the same, and no int64",
+         NUMBER(mock.at[2].type, SPH_SCALAR)},
+        {KIND_FUNCTION, "out of device_after: property \"rho\" is not declared as written",
+         NUMBER(mock.at[1].index, 0)},
+        {KIND_FUNCTION, "in of device_after: property \"rho\" is for the sweep alone",
+         NUMBER(mock.prop[0].access, SPH_DST_READ | SPH_DST_SWEEP)},
+        {KIND_FUNCTION, "in of device_after: property \"rho\" is not declared as read",
+         NUMBER(mock.prop[0].access, SPH_SRC_READ)},
+        {KIND_FUNCTION, "param of device_after: \"gamma\" is parameter 3, but 3 are declared",
+         NUMBER(mock.at[3].index, 3)},
+        {KIND_FUNCTION, "state of device_after: \"own\" is number 4096, which is absurd",
+         NUMBER(mock.at[4].index, 4096)},
+        {KIND_FUNCTION, "state of device_after is read, but the item has no life",
+         POINTER(mock.function.life, NULL)},
+        {KIND_FUNCTION, "fail[0] of device_after is not one line", TEXT(mock.fail[0], "a\nb")},
+        {KIND_FUNCTION, "list of in of device_after has a stride of 4",
+         NUMBER(mock.point.in.stride, 4)},
+        {KIND_FUNCTION, "device_after is set, but after is NULL",
+         POINTER(mock.function.after, NULL)},
+        {KIND_FUNCTION, "device_run is set, but the shape is not point",
+         POINTER(mock.function.device_run, &mock.point)},
+        {KIND_FUNCTION, "device_before is set, but before is NULL",
+         POINTER(mock.function.device_before, &mock.point)},
+    };
+
+    (void)state;
+    with_point = true;
+    ALL_REFUSED(slips);
+    mock_reset(KIND_FUNCTION);
+    add_point();
+    assert_null(mock_refusal());
+    mock.at[0].name = "h"; /* a name like any other */
+    assert_null(mock_refusal());
+    mock.point.h = 1;
+    assert_non_null(strstr(mock_refusal(), "in of device_after names \"h\", which is the smooth"));
+    mock_reset(KIND_FUNCTION);
+    add_point();
+    mock.at[1] = (sph_device_value){"other", 2, SPH_INT32};
+    assert_non_null(strstr(
+        mock_refusal(), "lists of device_after have property \"again\" twice, in out and inout"));
+    mock.point.in.count = 0;
+    mock.at[1] = (sph_device_value){"p", 1, SPH_SCALAR};
+    mock.at[2] = (sph_device_value){"rho", 0, SPH_SCALAR};
+    assert_non_null(strstr(mock_refusal(),
+                           "inout of device_after: property \"rho\" is not declared "
+                           "as written"));
+    with_point = false;
+}
+
+/* Alone, it reads nothing that is not declared so, and overwrites nothing that adds up. */
+static void bodies_of_eos(void **state)
+{
+    (void)state;
+    mock_reset(KIND_EOS);
+    mock.eos.device = &mock.point;
+    mock.life.create = create_nothing;
+    mock.prop[2].access = SPH_DST_UPDATE;
+    assert_null(mock_refusal());
+    mock.point.h = 1;
+    assert_non_null(strstr(mock_refusal(), "h of device is 1, but it is not of a pair function"));
+    mock.point.h = 0;
+    mock.prop[1].access = SPH_DST_SUM;
+    mock.prop[2].access = SPH_DST_WRITE | SPH_DST_READ;
+    assert_non_null(strstr(mock_refusal(), "out of device: property \"p\" is declared as one that "
+                                           "others write too: it belongs into inout"));
+    mock.prop[1].access = SPH_DST_WRITE;
+    mock.at[0] = (sph_device_value){"p", 1, SPH_SCALAR};
+    mock.point.out.count = 0;
+    assert_non_null(
+        strstr(mock_refusal(), "in of device: property \"p\" is not declared as read at the"));
 }
 
 static void functions(void **state)
@@ -485,6 +596,8 @@ int main(void)
         cmocka_unit_test(functions),
         cmocka_unit_test(loops),
         cmocka_unit_test(device_bodies),
+        cmocka_unit_test(bodies_of_points),
+        cmocka_unit_test(bodies_of_eos),
         cmocka_unit_test(kernels),
         cmocka_unit_test(recipes),
         cmocka_unit_test(missing_code),

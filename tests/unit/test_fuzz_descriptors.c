@@ -396,7 +396,7 @@ static char *own_root(char **owner, const void *in, const struct shape *shape, b
     return *owner;
 }
 
-/* A pair function with all that one can have. */
+/* A pair function with all that one can have, an equation of state with a body for devices. */
 static void furnish(void)
 {
     static sph_prop props[4];
@@ -421,6 +421,10 @@ static void furnish(void)
                              .param = LIST_OF(params)};
     mock.item.props = LIST_OF(props);
     mock.function.device = &body;
+    mock.life.create = create;
+    mock.prop[2].access = props[2].access = SPH_DST_UPDATE;
+    mock.function.before = mock.function.after = mock.function.run;
+    mock.function.device_before = mock.function.device_after = mock.eos.device = &mock.point;
 }
 
 static void prepare(const struct root *root)

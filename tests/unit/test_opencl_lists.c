@@ -1,5 +1,6 @@
-/* tests/unit/test_opencl_lists.c -- neighbour lists and the order of particles on a device against those of the host,
- * with every manager, as for processors and as for others. Skips itself where there is no device. */
+/* tests/unit/test_opencl_lists.c -- neighbour lists and the order of particles on a device against
+ * those of the host, with every manager, as for processors and as for others. Skips itself where
+ * there is no device. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -76,7 +77,8 @@ static void lists_free(struct lists *l)
     free(l->step);
 }
 
-/* A device's list has what the host's has within reach, each half's sources once, and nothing beyond. */
+/* A device's list has what the host's has within reach, each half's sources once, and nothing
+ * beyond. */
 static void compare(const struct group_list *host, const struct device_list *list,
                     const struct cloud *dst, const struct cloud *src, bool symmetric, bool same)
 {
@@ -152,7 +154,11 @@ static void lists_of(const struct cloud *dst, const struct cloud *src, bool same
     for (size_t i = 0; same && i < dst->n; i++) {
         self += dst->scale * dst->h[i] > 0;
     }
+    /* Of others than processors some are enough: every program takes its time to build. */
     for (size_t k = 0; neighbour_manager_at(k / 2); k++) {
+        if (k % 2 == 0 && (dst->dim == 1 || (dst->dim == 3 && k / 2 != NEIGHBOURS_RADIX))) {
+            continue;
+        }
         struct device_search *s = search_for(dst->dim, k / 2, k % 2);
         struct device_list l = {.n_group = 0};
 
@@ -199,6 +205,10 @@ static void even_clouds(void **state)
         cloud_shuffle(&l, 3);
         sort_cloud(&l);
         lists_of(&l.c, &l.c, true);
+        for (size_t i = 0; i < o.c.n; i++) { /* each alone, or nearly so */
+            o.h[i] *= 0.02;
+        }
+        lists_of(&o.c, &o.c, true);
         cloud_free(&o);
         cloud_free(&l);
     }
@@ -312,7 +322,8 @@ static void small_and_odd(void **state)
     }
 }
 
-/* Outliers in an empty box; one that reaches everything; more sources than a slot or a bundle has room for. */
+/* Outliers in an empty box; one that reaches everything; more sources than a slot or a bundle has
+ * room for. */
 static void far_and_near(void **state)
 {
     (void)state;
@@ -383,7 +394,7 @@ static void order_of(const struct owned *o)
     t = cloud_there(device, &o->c, id, 5);
     t.c.wide = &t.wide;
     assert_int_equal(cell_order(&o->c, id, cell_best(&o->c), 2, host, &e), 0);
-    for (int round = 0; round < 2; round++) {
+    for (int round = o->c.dim != 2; round < 2; round++) {
         if (device_order(search_for(o->c.dim, 0, round), &t.c, 0, &order, &e) != 0) {
             fail_msg("%s", e.text);
         }

@@ -1,5 +1,5 @@
-/* test_opencl_ops.c -- columns on a device against the same on the host: transfers, mirrors, order, reductions, how
- * far particles have moved. Skips itself where there is no device. */
+/* test_opencl_ops.c -- columns on a device against the same on the host: transfers, mirrors, order,
+ * reductions, how far particles have moved. Skips itself where there is no device. */
 #include "config.h"
 
 #include <setjmp.h>
@@ -73,6 +73,7 @@ static void test_mirror(void **state)
             assert_int_equal(flags, 0);
             if (p.n) {
                 column_set(&p.column[X], (uint32_t)dim - 1, p.n - 1, s % 2 ? NAN : 3.5);
+                arena_written_there(&a, X);
                 OK(arena_put(&a, X, &why));
                 OK(ops_mirror_places(ops[dim], &a, X, centre, quantum, &why));
                 OK(ops_flags(ops[dim], &flags, &why));

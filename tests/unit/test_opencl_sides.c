@@ -1,5 +1,5 @@
-/* test_opencl_sides.c -- on a device, particles that leave the domain and ghosts against domain/sides.c. Skips itself
- * where there is no device. */
+/* test_opencl_sides.c -- on a device, particles that leave the domain and ghosts against
+ * domain/sides.c. Skips itself where there is no device. */
 #include "config.h"
 
 #include <setjmp.h>

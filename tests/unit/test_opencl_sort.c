@@ -1,5 +1,5 @@
-/* tests/unit/test_opencl_sort.c -- running sums and sorts on a device, of many sizes. Skips itself where there is no
- * device. */
+/* tests/unit/test_opencl_sort.c -- running sums and sorts on a device, of many sizes. Skips itself
+ * where there is no device. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -147,7 +147,7 @@ static const sph_prop gas_inverse_props[] = {
 };
 ITEM(gas, "gas", SPH_LIST(gas_params));
 static const sph_eos gas = {
-    SIZE(sph_eos), 0, &gas_item, NULL, gas_run, gas_inverse, SPH_LIST(gas_inverse_props)};
+    SIZE(sph_eos), 0, &gas_item, NULL, gas_run, gas_inverse, SPH_LIST(gas_inverse_props), NULL};
 
 static const sph_step flow_steps[] = {
     SPH_STEP(SPH_AT_START, "mark"),  SPH_STEP(SPH_AT_EVALUATE, "sum"),

@@ -177,7 +177,7 @@ static void print_device(const struct summary *s, FILE *out, int width)
     if (isnan(pair))
         return;
     label(out, width, "sweeps", "");
-    fprintf(out, "%.3g ns per pair: %.0f %% of the arithmetic, %.0f %% of the bandwidth\n", pair,
+    fprintf(out, "%.3g ns per pair, %.0f %% of its rate, %.0f %% of its bandwidth\n", pair,
             100 * member(sweeps, "share_of_rate"), 100 * member(sweeps, "share_of_bandwidth"));
 }
 

@@ -54,7 +54,7 @@ static const char source[] =
     "    out[get_global_id(0)] = (ulong)sum;\n"
     "}\n";
 
-enum { REPEATS = 4, FLOPS_PER_TURN = 8 * 2 };
+enum { REPEATS = 8, FLOPS_PER_TURN = 8 * 2 };
 
 static const double enough = 0.01; /* [s] of one launch of chains */
 

@@ -2,6 +2,7 @@
 whole Sod and Noh, to their errors; several arrays, sides, smoothing lengths; the particles' order; a run that goes
 on; and what is said when it cannot be. Norm: root of the sum of squares over all particles and components of a
 column, of the difference over the processor's."""
+import os
 import sys
 
 import numpy
@@ -131,6 +132,18 @@ for name in ("noh", "noh 3D", "drop", "periodic 3D", "mirror 3D", "two arrays"):
     a, b = here.summary()["cost"], there.summary()["cost"]
     expect(f"{name}: list builds", abs(a["list_builds"] - b["list_builds"]) <= 2, (a["list_builds"], b["list_builds"]))
     expect(f"{name}: pairs", abs(a["pairs"] / b["pairs"] - 1) < 0.02, (a["pairs"], b["pairs"]))
+
+# -- Neighbours in other places; what a pass writes and reads of others ------------------------------------------
+
+framed = box(2, 30, "wcsph", {})
+framed["plugins"].append(os.path.abspath(os.path.join(os.environ["top_builddir"], "tests/opencl/.libs/frames.so")))
+framed["particles"]["fluid"]["fields"].update({"X": ["2*x", "y*y"], "q": "sin(7*x)"})
+framed["scheme"]["edit"] = [{"insert": name} for name in ("followed", "frozen", "mix")]
+framed["scheme"]["edit"].append({"insert": "turn", "at": "finish"})
+for precision, bar in (("double", 1e-11), ("mixed", 1e-4)):
+    options = ("--precision", precision, "--steps", "40")
+    here, there = scenes.good(framed, *options, *ON), scenes.good(framed, *options)
+    compare(f"frames, {precision}, 40 steps", here.last(), there.last(), bar, ("X", "followed", "frozen", "q", "dq"))
 
 # -- All integrators ----------------------------------------------------------------------------------------
 

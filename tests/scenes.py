@@ -83,7 +83,8 @@ class Result:
 class Scenes:
     """Runs in a scratch folder; end() exits with 1 if any expectation was missed."""
 
-    def __init__(self):
+    def __init__(self, *always):
+        self.always = always  # options of every run
         self.scratch = tempfile.TemporaryDirectory()
         self.missed = self.count = 0
 
@@ -108,7 +109,7 @@ class Scenes:
         self.count += 1
         out = os.path.join(self.scratch.name, f"out{self.count}")
         path = os.path.join(EXAMPLES, scene) if isinstance(scene, str) else self.write(scene)
-        words = [path, "--out", out, "--threads", "1", *(["--quiet"] if quiet else []), *options]
+        words = [path, "--out", out, "--threads", "1", *self.always, *(["--quiet"] if quiet else []), *options]
         return Result(self.command(*words, before=before), out)
 
     def good(self, scene, *options, **others):

@@ -3,19 +3,20 @@
 and a "failure" that name cause, particle, place, pass and step; what they say is compared with what is found
 here from the failed state's snapshot, the log and what the scene has planted; checkpoint_failed.h5 holds
 the same state, and is not gone on from. Then: what is counted or off goes on, and scenes that are well raise
-nothing."""
+nothing. With --device=opencl:N all of it there (device-watch.py)."""
 import copy
 import json
 import math
 import os
 import resource
+import sys
 
 import h5py
 import numpy
 
 from scenes import Scenes, Snapshot, changed, example
 
-scenes = Scenes()
+scenes = Scenes(*sys.argv[1:])
 expect = scenes.expect
 folder = os.path.join(os.environ["top_srcdir"], "tests", "watch")
 CAUSES = ("not-finite", "density", "internal-energy", "escaped", "time-step", "energy", "neighbours")
@@ -213,7 +214,7 @@ fails("energy, its scale given", changed(scene, watch={"energy": {"above": 1e-9,
 
 scene = changed(scene_of("energy"), output={"checkpoint": {"steps": 4, "keep": 9}})
 path, result = scenes.write(scene, "beside.json"), scenes.run(scene)
-failed, out = result.path("checkpoint_failed.h5"), ("--out", result.out, "-q")
+failed, out = result.path("checkpoint_failed.h5"), ("--out", result.out, "-q", *scenes.always)
 kept = [f"checkpoint_{step:08d}.h5" for step in (4, 8, 12)]
 
 
@@ -251,7 +252,7 @@ result = scenes.run(scene)
 room = (os.path.getsize(result.path("checkpoint_failed.h5")) + os.path.getsize(result.snapshots()[-1])) // 2
 expect("no room: for it, but for others", room > os.path.getsize(result.snapshots()[-1]), room)
 full = os.path.join(scenes.scratch.name, "full")
-done = scenes.command(scenes.write(scene), "--out", full, "-q", "--threads", "1",
+done = scenes.command(scenes.write(scene), "--out", full, "-q", "--threads", "1", *scenes.always,
                       preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (room, room)))
 expect("no room: the first error", done.returncode == 1 and done.stderr == result.stderr, done.stderr)
 expect("no room: all but it", sorted(os.listdir(full)) == sorted(set(os.listdir(result.out)) - {"checkpoint_failed.h5"}),

@@ -189,7 +189,7 @@ static int run(const struct arguments *a, struct loaded *l, const char *folder,
     if (!(end >= l->scene.time.begin))
         return error_set(e, EXIT_USAGE, "--until %g lies before the scene's begin, %g", end,
                          l->scene.time.begin);
-    if (resume ? output_claim(&out, folder, e) : output_open(&out, folder, e))
+    if (run_check(&l->plan, a->path, a->audit, e) || output_claim(&out, folder, e))
         return -1;
     signal(SIGINT, interrupt);
     signal(SIGTERM, interrupt);

@@ -133,6 +133,15 @@ int arena_resize(struct arena *a, size_t n, size_t n_ghost, struct error *e)
     return 0;
 }
 
+int arena_room(struct arena *a, size_t n_ghost, struct error *e)
+{
+    const size_t n = a->n;
+    device_release(a->d, &a->wide);
+    device_release(a->d, &a->narrow);
+    a->plane = a->n = 0; /* nothing to keep */
+    return arena_resize(a, n, n_ghost, e) || arena_resize(a, n, 0, e) ? -1 : 0;
+}
+
 int arena_put(struct arena *a, int column, struct error *e)
 {
     const struct column *c = &a->p->column[column];

@@ -39,6 +39,9 @@ size_t arena_bytes(const struct arena *a, size_t n);
 
 /* Room for n + n_ghost particles on the device; what real particles have is kept. */
 int arena_resize(struct arena *a, size_t n, size_t n_ghost, struct error *e);
+/* Room for so many ghosts from the start, while nothing is here yet: later, columns would move to a larger buffer
+ * beside the old one. */
+int arena_room(struct arena *a, size_t n_ghost, struct error *e);
 /* The device's copy is right afterwards, if either is (real particles, not ghosts, not the mirror). */
 int arena_put(struct arena *a, int column, struct error *e);
 /* The host's copy is, likewise: of real particles. Resizes the host's array to the device's n, with no ghosts there, if the

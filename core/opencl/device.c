@@ -71,7 +71,7 @@ int device_lose(struct device *d, struct error *e, cl_int status, const char *ve
 {
     error_set(&d->why, EXIT_RUN, "device \"%s\" fails to %s %s: %s (%d)", d->facts.name, verb, what,
               device_word(status), (int)status);
-    d->lost = true;
+    d->lost = d->failed = true;
     return device_alive(d, e);
 }
 
@@ -160,7 +160,39 @@ static int find_device(struct device *d, size_t number, struct error *e)
                      number, n == 1 ? "is" : "are", n, n - 1);
 }
 
+int device_look(size_t number, struct device_facts *out, struct error *e)
+{
+    struct device d = {.id = NULL};
+
+    if (find_device(&d, number, e))
+        return -1;
+    find_facts(&d);
+    *out = d.facts;
+    return 0;
+}
+
+/* Only so many of its compute units from now on. A device that cannot be divided stays whole. */
+static void take_part(struct device *d, unsigned units)
+{
+    const cl_device_partition_property counts[] = {CL_DEVICE_PARTITION_BY_COUNTS, (intptr_t)units,
+                                                   CL_DEVICE_PARTITION_BY_COUNTS_LIST_END, 0};
+    cl_device_id part = NULL;
+    cl_uint n = 0;
+
+    if (!d->facts.cpu || units == 0 || units >= d->facts.units ||
+        clCreateSubDevices(d->id, counts, 1, &part, &n) != CL_SUCCESS || n != 1)
+        return;
+    d->id = part;
+    d->part = true;
+    d->facts.units = units;
+}
+
 int device_open(struct device **out, size_t number, struct error *e)
+{
+    return device_open_part(out, number, 0, e);
+}
+
+int device_open_part(struct device **out, size_t number, unsigned units, struct error *e)
 {
     struct device *d = calloc(1, sizeof(*d));
     cl_int status;
@@ -177,6 +209,7 @@ int device_open(struct device **out, size_t number, struct error *e)
         return -1;
     }
     find_facts(d);
+    take_part(d, units);
     d->context = clCreateContext(NULL, 1, &d->id, NULL, NULL, &status);
     if (status == CL_SUCCESS)
         d->queue = clCreateCommandQueue(d->context, d->id, CL_QUEUE_PROFILING_ENABLE, &status);
@@ -209,6 +242,8 @@ void device_close(struct device *d)
         clReleaseCommandQueue(d->queue);
     if (d->context)
         clReleaseContext(d->context);
+    if (d->part)
+        clReleaseDevice(d->id);
     free(d->pending);
     free(d->span);
     free(d->memory);
@@ -219,6 +254,12 @@ void device_close(struct device *d)
 const struct device_facts *device_facts(const struct device *d)
 {
     return &d->facts;
+}
+
+bool device_failed(const struct device *d, bool *lost)
+{
+    *lost = d->lost;
+    return d->failed;
 }
 
 int device_need_fp64(const struct device *d, struct error *e)
@@ -259,12 +300,12 @@ static int check_room(const struct device *d, size_t bytes, const char *what, st
 
     if (bytes > f->largest)
         return error_set(e, EXIT_RUN,
-                         "device \"%s\" has no room for the %s: %zu bytes, where one buffer has at "
+                         "device \"%s\" has no room for %s: %zu bytes, where one buffer has at "
                          "most %llu",
                          f->name, what, bytes, (unsigned long long)f->largest);
     if (bytes > f->memory - (d->bytes < f->memory ? d->bytes : f->memory))
         return error_set(e, EXIT_RUN,
-                         "device \"%s\" has no room for the %s: %zu bytes beside the %zu in use, "
+                         "device \"%s\" has no room for %s: %zu bytes beside the %zu in use, "
                          "of %llu",
                          f->name, what, bytes, d->bytes, (unsigned long long)f->memory);
     return 0;
@@ -295,8 +336,10 @@ int device_reserve(struct device *d, struct device_buffer *b, size_t bytes, cons
         return error_memory(e, what, bytes);
     bytes = bytes == 0 ? GRAIN : (bytes + GRAIN - 1) / GRAIN * GRAIN;
     device_release(d, b);
-    if (check_room(d, bytes, what, e))
+    if (check_room(d, bytes, what, e)) {
+        d->failed = true;
         return -1;
+    }
     grown = realloc(d->memory, (d->n_memory + 1) * sizeof(*grown));
     if (!grown)
         return error_memory(e, "the list of buffers", (d->n_memory + 1) * sizeof(*grown));
@@ -307,9 +350,10 @@ int device_reserve(struct device *d, struct device_buffer *b, size_t bytes, cons
         if (status != CL_SUCCESS)
             clReleaseMemObject(mem);
     }
+    d->failed = d->failed || status != CL_SUCCESS;
     if (status != CL_SUCCESS)
         return error_set(e, EXIT_RUN,
-                         "device \"%s\" gives no room for the %s, %zu bytes beside the %zu in use, "
+                         "device \"%s\" gives no room for %s, %zu bytes beside the %zu in use, "
                          "of %llu: %s (%d)",
                          d->facts.name, what, bytes, d->bytes, (unsigned long long)d->facts.memory,
                          device_word(status), (int)status);

@@ -28,10 +28,16 @@ struct device_facts {
 
 /* `number` as `sph info --devices` counts. None there, or none of that number: EXIT_USAGE. */
 int device_open(struct device **out, size_t number, struct error *e);
+/* The same with no more than so many compute units, where it is a processor that can be divided; 0: with all. */
+int device_open_part(struct device **out, size_t number, unsigned units, struct error *e);
+/* What it is, without opening it. */
+int device_look(size_t number, struct device_facts *out, struct error *e);
 void device_close(struct device *d); /* NULL: nothing */
 const struct device_facts *device_facts(const struct device *d);
 /* -1 with EXIT_USAGE for a device without double precision. */
 int device_need_fp64(const struct device *d, struct error *e);
+/* Whether a call has failed for a reason of the device's: no memory, or worse. *lost: nothing works any longer. */
+bool device_failed(const struct device *d, bool *lost);
 
 /* -- Memory -------- */
 

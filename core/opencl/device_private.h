@@ -39,6 +39,7 @@ struct device_memory {
 struct device {
     struct device_facts facts;
     cl_device_id id;
+    bool part; /* `id` is a part of a device, ours to release */
     cl_context context;
     cl_command_queue queue;
     struct device_memory *memory; /* all buffers */
@@ -55,7 +56,8 @@ struct device {
     cl_ulong last_end;              /* when that ended; 0: there was none */
     struct device_pending *pending; /* in the queue's order */
     size_t n_pending, unflushed;
-    bool lost; /* the device itself failed: */
+    bool failed; /* to do something */
+    bool lost;   /* the device itself failed: */
     struct error why;
 };
 

@@ -51,6 +51,7 @@ static int build_failed(struct device *d, cl_program program, cl_int status, con
     char *log = build_log(d, program);
     const char *const name = d->facts.name;
 
+    d->failed = true;
     if (!log || !device_log_read(text, log, &c))
         error_set(e, EXIT_RUN, "device \"%s\" fails to build %s: %s (%d)", name, what,
                   device_word(status), (int)status);
@@ -256,6 +257,7 @@ int device_kernel(struct device *d, struct device_program *p, const char *name, 
     if (status != CL_SUCCESS) {
         free(k->name);
         free(k);
+        d->failed = true;
         return error_set(e, EXIT_RUN, "device \"%s\" has no kernel %s: %s (%d)", d->facts.name,
                          name, device_word(status), (int)status);
     }
@@ -278,6 +280,7 @@ static int set_args(struct device *d, struct device_kernel *k, const struct devi
         const cl_int status =
             arg[i].buffer ? clSetKernelArg(k->kernel, (cl_uint)i, sizeof(mem), &mem)
                           : clSetKernelArg(k->kernel, (cl_uint)i, arg[i].size, arg[i].value);
+        d->failed = d->failed || status != CL_SUCCESS;
         if (status != CL_SUCCESS)
             return error_set(e, EXIT_RUN,
                              "device \"%s\" refuses argument %zu of kernel %s: %s (%d)",
@@ -302,7 +305,7 @@ int device_launch(struct device *d, struct device_kernel *k, size_t items,
     status =
         clEnqueueNDRangeKernel(d->queue, k->kernel, 1, NULL, &global, &k->group, 0, NULL, &event);
     if (status != CL_SUCCESS)
-        return device_lose(d, e, status, "run", k->name);
+        return device_lose(d, e, status, "run", d->time[k->row].name);
     return device_note(d, event, k->row, 0, NULL, e);
 }
 

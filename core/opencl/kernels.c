@@ -67,6 +67,42 @@ static int find_kernels(struct kernels *k, int uniform, struct error *e)
     return 0;
 }
 
+static bool has_file(const char *file, const char *text, const char *prelude)
+{
+    return (text && strcmp(file, text) == 0) || (prelude && strcmp(file, prelude) == 0);
+}
+
+/* Whether a text of the pass is of that file. */
+static bool is_from(const struct pass *p, const char *file)
+{
+    const sph_device_point *const point[3] = {pass_before(p), pass_after(p), pass_point(p)};
+    const sph_device_body *const pair = p->function ? p->function->device : NULL;
+    bool is = pair && has_file(file, pair->file, pair->prelude_file);
+
+    for (int i = 0; i < 3; i++)
+        is = is || (point[i] && has_file(file, point[i]->file, point[i]->prelude_file));
+    return is;
+}
+
+/* Puts the plugin whose text does not compile in front of the sentence, where only one has such a file. */
+static void blame(const struct kernels *k, struct error *e)
+{
+    const char *file = device_build_file(k->d);
+    const struct pass *found = NULL;
+
+    for (size_t i = 0; file && i < k->plan->n_pass; i++) {
+        const struct pass *p = &k->plan->pass[i];
+        if (!p->use.entry || p->use.entry->text || !is_from(p, file))
+            continue;
+        if (found && found->use.entry->plugin != p->use.entry->plugin)
+            return;
+        found = found ? found : p;
+    }
+    if (found)
+        error_prefix(e, "\"%s\" of plugin \"%s\"", found->use.item->name,
+                     k->plan->registry->plugin[found->use.entry->plugin].name);
+}
+
 static int build(struct kernels *k, int uniform, struct error *e)
 {
     if (k->program[uniform])
@@ -76,8 +112,10 @@ static int build(struct kernels *k, int uniform, struct error *e)
         return error_memory(e, "kernels", k->n * PART_COUNT);
     if (device_build(k->d, &k->program[uniform], k->text,
                      uniform ? "-cl-std=CL1.2 -w -DSPH_UNIFORM=1" : "-cl-std=CL1.2 -w",
-                     "the scene's passes", e))
+                     "the scene's passes", e)) {
+        blame(k, e);
         return -1;
+    }
     return find_kernels(k, uniform, e);
 }
 

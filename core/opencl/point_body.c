@@ -85,8 +85,8 @@ static void put_kernel(FILE *out, const sph_device_point *d)
           "    const ulong sph_i = get_global_id(0);\n"
           "    if (sph_i >= sph_count)\n"
           "        return;\n"
-          "    const sph_batch sph_now = {sph_time, sph_dt, sph_step, DIM};\n"
-          "    const sph_batch *const b = &sph_now;\n",
+          "    const sph_moment sph_now = {sph_time, sph_dt, sph_step, DIM};\n"
+          "    const sph_moment *const b = &sph_now;\n",
           out);
     if (d->h)
         fputs("    const R h = sph_h[sph_i];\n", out);

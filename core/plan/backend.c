@@ -5,25 +5,15 @@
 bool pass_on_device(const struct plan *plan, const struct pass *p, char *why, size_t size)
 {
     const struct entry *entry = p->use.entry;
-    const char *lacks = NULL;
 
-    if (p->assignment && assignment_device(p->assignment))
+    if (p->assignment ? assignment_device(p->assignment) != NULL : entry_on_device(entry))
         return true;
-    if (p->assignment) {
+    if (p->assignment)
         snprintf(why, size, "the expression of \"%s\" is computed on the processor", p->step);
-        return false;
-    }
-    if (!p->function)
-        lacks = entry_eos(entry)->device ? NULL : "equation of state";
-    else if (p->shape == SPH_POINT)
-        lacks = p->function->device_run ? NULL : "function";
-    else if (!p->function->device || (p->before && !p->function->device_before) ||
-             (p->after && !p->function->device_after))
-        lacks = "function";
-    if (!lacks)
-        return true;
-    snprintf(why, size, "%s \"%s\" of plugin \"%s\" has no device body", lacks, p->use.item->name,
-             plan->registry->plugin[entry->plugin].name);
+    else
+        snprintf(why, size, "%s \"%s\" of plugin \"%s\" has no device body",
+                 p->function ? "function" : "equation of state", p->use.item->name,
+                 plan->registry->plugin[entry->plugin].name);
     return false;
 }
 

@@ -1,5 +1,5 @@
 /* plan/explain.c -- the plan told: for people as a database tells a query plan, for machines as JSON. */
-#include "plan/plan.h"
+#include "plan/device_memory.h"
 #include "scene/fill.h"
 #include <math.h>
 #include <string.h>
@@ -22,15 +22,15 @@ static const char *type_name(uint32_t type)
     }
 }
 
-/* True neighbours of a particle in a uniform filling at h_factor * spacing. */
-static double neighbours(const struct plan *plan, const struct plan_array *a)
+double plan_neighbours(const struct plan *plan, size_t array)
 {
+    const struct plan_array *a = &plan->array[array];
     static const double ball[4] = {1.0, 2.0, 3.14159265358979324, 4.18879020478639098};
     return ball[plan->dim] *
            pow(plan->kernel.support * plan->reach_scale * a->scene->h_factor, plan->dim);
 }
 
-static uint64_t count(const struct plan *plan, size_t array)
+uint64_t plan_count(const struct plan *plan, size_t array)
 {
     const struct plan_array *a = &plan->array[array];
     uint64_t n = 0;
@@ -134,9 +134,9 @@ static void print_array(const struct plan *plan, size_t index, FILE *out)
 {
     const struct plan_array *a = &plan->array[index];
     fprintf(out, "  %s: %llu particles, %zu columns, %zu bytes a particle (lists: %.0f more)\n",
-            a->p.name, (unsigned long long)count(plan, index), a->p.n_column,
+            a->p.name, (unsigned long long)plan_count(plan, index), a->p.n_column,
             plan_bytes(plan, index),
-            plan->has_kernel ? 2.0 * (neighbours(plan, a) * 2.6) / SPH_LANES : 0.0);
+            plan->has_kernel ? 2.0 * (plan_neighbours(plan, index) * 2.6) / SPH_LANES : 0.0);
     for (size_t c = 0; c < a->p.n_column; c++) {
         const struct column *column = &a->p.column[c];
         fprintf(out, "    %-8s %-11s %-6s %-5s %-12s ", column->name, type_name(column->type),
@@ -230,8 +230,8 @@ static double expected_pairs(const struct plan *plan)
     for (size_t i = 0; i < plan->n_pass; i++) {
         const struct pass *p = &plan->pass[i];
         if (p->shape == SPH_PAIR && p->moment == MOMENT_EVALUATE)
-            pairs += (double)count(plan, p->dst.array) *
-                     neighbours(plan, &plan->array[p->dst.array]) * (p->max_sweeps ? 2.0 : 1.0);
+            pairs += (double)plan_count(plan, p->dst.array) * plan_neighbours(plan, p->dst.array) *
+                     (p->max_sweeps ? 2.0 : 1.0);
     }
     return pairs * plan->integrator->evaluations;
 }
@@ -268,6 +268,8 @@ void plan_print(const struct plan *plan, FILE *out)
     fprintf(out, "expected\n  pairs a step     %.3g\n", pairs);
     if (isfinite(pairs) && pairs > 0.0)
         fprintf(out, "  seconds a step   %.2g (at 6 ns a pair, one thread)\n", 6e-9 * pairs);
+    if (plan->on_device)
+        plan_print_device_memory(plan, out);
 }
 
 static void add_names(cJSON *to, const char *key, const struct pass *p, uint32_t access)

@@ -178,6 +178,9 @@ void plan_free(struct plan *plan);
 const struct plan_list *plan_pair(const struct plan *plan, size_t dst, size_t src);
 /* Bytes of a particle of an array while the run goes on: columns and their mirrors. */
 size_t plan_bytes(const struct plan *plan, size_t array);
+/* Particles of an array, made or to be made; true neighbours of one, in all arrays, in a uniform filling. */
+uint64_t plan_count(const struct plan *plan, size_t array);
+double plan_neighbours(const struct plan *plan, size_t array);
 
 /* Columns of array a that a pass reads from it, writes in it. */
 bool pass_writes(const struct pass *p, size_t array, int column);

@@ -3,6 +3,7 @@
  * numbers. */
 #include "run/device.h"
 
+#include "plan/device_memory.h"
 #include "run/chunks.h"
 #include "run/watch.h"
 
@@ -53,27 +54,6 @@ static int make_tables(struct run *r, struct error *e)
     return 0;
 }
 
-/* What the particles will take: said before anything is computed. */
-static int check_memory(const struct run *r, struct error *e)
-{
-    const struct device_facts *facts = device_facts(r->device->d);
-    uint64_t bytes = 0, largest = 0;
-
-    for (size_t a = 0; a < r->plan->n_array; a++) {
-        const uint64_t one = arena_bytes(&r->device->arena[a], r->plan->array[a].p.n);
-        bytes += one;
-        largest = one > largest ? one : largest;
-    }
-    if (bytes <= facts->memory && largest <= facts->largest)
-        return 0;
-    return error_set(
-        e, EXIT_RUN,
-        "the particles need %.3g GB on device \"%s\", which has %.3g GB, %.3g GB of them in "
-        "one piece: take fewer particles, another device or --device cpu",
-        (double)bytes * 1e-9, facts->name, (double)facts->memory * 1e-9,
-        (double)facts->largest * 1e-9);
-}
-
 int run_device_open(struct run *r, struct error *e)
 {
     const struct plan *plan = r->plan;
@@ -81,17 +61,17 @@ int run_device_open(struct run *r, struct error *e)
 
     if (!d)
         return error_memory(e, "the run on a device", sizeof(*d));
-    if (device_open(&d->d, plan->scene->device.number, e) || make_tables(r, e) ||
-        make_stages(r, e) || ops_open(&d->ops, d->d, plan->dim, e) ||
+    if (device_open_part(&d->d, plan->scene->device.number, (unsigned)r->threads, e) ||
+        make_tables(r, e) || make_stages(r, e) || ops_open(&d->ops, d->d, plan->dim, e) ||
         ops_need_sides(d->ops, &plan->scene->box, e) || look_open(&d->look, d->d, plan->dim, e) ||
         device_search_open(&d->search, d->d, plan->dim, plan->manager, e))
         return -1;
     for (size_t a = 0; a < plan->n_array; a++)
-        if (arena_init(&d->arena[a], d->d, &plan->array[a].p, e))
+        if (arena_init(&d->arena[a], d->d, &plan->array[a].p, e) ||
+            (plan->array[a].p.n && arena_room(&d->arena[a], plan_ghosts(plan, a), e)))
             return -1;
-    return run_device_cost_open(r, e) || check_memory(r, e) ||
-                   kernels_make(&d->kernels, d->d, plan, d->arena, d->stage, d->first[MOMENT_COUNT],
-                                e)
+    return run_device_cost_open(r, e) || kernels_make(&d->kernels, d->d, plan, d->arena, d->stage,
+                                                      d->first[MOMENT_COUNT], e)
                ? -1
                : 0;
 }
@@ -107,10 +87,10 @@ void run_device_close(struct run *r)
     run_device_cost_close(r);
     for (size_t k = 0; d->list && k < r->plan->n_list; k++)
         device_list_release(d->d, &d->list[k]);
-    for (size_t k = 0; d->skin && k < n * r->plan->n_frame; k++)
+    for (size_t k = 0; d->skin && d->ops && k < n * r->plan->n_frame; k++)
         ops_skin_release(d->ops, &d->skin[k]);
     for (size_t a = 0; a < n; a++) {
-        if (d->ghosts)
+        if (d->ghosts && d->ops)
             ops_ghosts_release(d->ops, &d->ghosts[a]);
         if (d->arena)
             arena_fini(&d->arena[a]);
@@ -320,6 +300,8 @@ static int begin_reductions(struct run *r, const struct stage *s, struct error *
             const bool weighted = use == SPH_USE_INTERNAL || use == SPH_USE_POTENTIAL;
             if (q->pass != s->pass[k] || d->slot[i] != NO_SLOT)
                 continue;
+            if (d->n_slot == OPS_RESULTS / 2 && run_device_collect(r, e))
+                return -1;
             if (weighted && arena_put(&d->arena[q->array], a->mass, e))
                 return -1;
             if (ops_reduce_begin(d->ops, &d->arena[q->array], q->column, 0, weighted ? a->mass : -1,
@@ -447,7 +429,7 @@ static int find_wrong(struct run *r, enum moment moment, struct error *e)
     for (size_t i = 0; i < r->plan->n_pass; i++) {
         const struct pass *p = &r->plan->pass[i];
         r->watch->done = i + 1;
-        if (p->moment == moment && ((r->look && finite_pass(r, p, e)) || watch_pass(r, p, e)))
+        if (p->moment == moment && ((r->look && finite_pass_late(r, p, e)) || watch_pass(r, p, e)))
             return -1;
     }
     r->suspect = true;

@@ -83,7 +83,8 @@ static int host_says(struct run *r, struct error *e)
 {
     struct run_device *device = r->device;
     struct error why = {0};
-    int status = run_device_fetch(r, &why);
+    bool lost;
+    int status = run_device_failed(r, &lost) ? -1 : run_device_fetch(r, &why);
 
     if (status)
         return -1;
@@ -102,17 +103,46 @@ static int host_says(struct run *r, struct error *e)
 /* -- Where everything is -------- */
 
 struct extent {
-    double low[3], high[3];
+    double low[3], high[3], h_low, h_high;
 };
 
+/* Numbers that were left on the device behind the reductions that are on their way: one wait for all. */
+static int take_results(struct run *r, double *out, size_t n, struct error *e)
+{
+    double all[OPS_RESULTS];
+    const size_t first = r->device->n_slot;
+
+    if (ops_results(r->device->ops, all, first + n, NULL, e))
+        return -1;
+    memcpy(out, all + first, n * sizeof(*out));
+    return 0;
+}
+
+/* Places and h of an array that is not empty. */
 static int extent_of(struct run *r, size_t array, struct extent *x, struct error *e)
 {
     const struct plan_array *a = &r->plan->array[array];
+    const struct arena *arena = &r->device->arena[array];
+    struct ops *o = r->device->ops;
+    const uint32_t dim = (uint32_t)r->plan->dim;
+    const size_t first = r->device->n_slot;
+    double end[8];
 
-    for (int c = 0; c < r->plan->dim; c++)
-        if (ops_range(r->device->ops, &r->device->arena[array], a->position, (uint32_t)c,
-                      &x->low[c], &x->high[c], e))
+    for (uint32_t c = 0; c <= dim; c++) {
+        const int column = c < dim ? a->position : a->smoothing;
+        const uint32_t component = c < dim ? c : 0;
+        if (ops_reduce_begin(o, arena, column, component, -1, SPH_REDUCE_MIN, first + 2 * c, e) ||
+            ops_reduce_begin(o, arena, column, component, -1, SPH_REDUCE_MAX, first + 2 * c + 1, e))
             return -1;
+    }
+    if (take_results(r, end, 2 * dim + 2, e))
+        return -1;
+    for (uint32_t c = 0; c < dim; c++) {
+        x->low[c] = end[2 * c];
+        x->high[c] = end[2 * c + 1];
+    }
+    x->h_low = end[2 * dim];
+    x->h_high = end[2 * dim + 1];
     return 0;
 }
 
@@ -141,17 +171,25 @@ static int look_for_escaped(struct run *r, struct error *e)
 static int holds(struct run *r, size_t frame, bool *answer, struct error *e)
 {
     struct skin_change all = {0.0, INFINITY};
+    const size_t first = r->device->n_slot, most = (OPS_RESULTS - 2 - first) / 2;
+    double change[OPS_RESULTS];
+    size_t n = 0;
 
+    *answer = false;
     for (size_t a = 0; a < r->plan->n_array; a++) {
-        struct skin_change here;
         if (!in_frame(r, frame, a) || r->device->arena[a].n == 0)
             continue;
-        if (ops_skin_change(r->device->ops, &r->device->skin[frame * r->plan->n_array + a],
-                            &r->device->arena[a], place_in(r, frame, a), reach_in(r, frame, a),
-                            support(r), r->skin, &here.moved, &here.room, e))
+        if (n == most) /* more arrays than results: lists are made anew */
+            return 0;
+        if (ops_skin_begin(r->device->ops, &r->device->skin[frame * r->plan->n_array + a],
+                           &r->device->arena[a], place_in(r, frame, a), reach_in(r, frame, a),
+                           support(r), r->skin, first + 2 * n++, e))
             return -1;
-        all = skin_both(all, here);
     }
+    if (n && take_results(r, change, 2 * n, e))
+        return -1;
+    for (size_t k = 0; k < n; k++)
+        all = skin_both(all, (struct skin_change){change[2 * k], change[2 * k + 1]});
     *answer = skin_holds(all);
     return 0;
 }
@@ -223,7 +261,8 @@ static int find_ranges(struct run *r, struct extent *all, double *overshoot, str
 {
     const struct box *box = &r->plan->scene->box;
 
-    *all = (struct extent){{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+    *all = (struct extent){.low = {INFINITY, INFINITY, INFINITY},
+                           .high = {-INFINITY, -INFINITY, -INFINITY}};
     *overshoot = 0.0;
     for (size_t a = 0; a < r->plan->n_array; a++) {
         struct extent x;
@@ -231,11 +270,10 @@ static int find_ranges(struct run *r, struct extent *all, double *overshoot, str
         r->h_high[a] = 0.0;
         if (r->device->arena[a].n == 0)
             continue;
-        if (extent_of(r, a, &x, e) ||
-            ops_range(r->device->ops, &r->device->arena[a], r->plan->array[a].smoothing, 0,
-                      &r->h_low[a], &r->h_high[a], e))
+        if (extent_of(r, a, &x, e))
             return -1;
-        r->h_high[a] = fmax(r->h_high[a], 0.0);
+        r->h_low[a] = x.h_low;
+        r->h_high[a] = fmax(x.h_high, 0.0);
         for (int c = 0; c < r->plan->dim; c++) {
             all->low[c] = fmin(all->low[c], x.low[c]);
             all->high[c] = fmax(all->high[c], x.high[c]);
@@ -277,7 +315,8 @@ static int make_ghosts(struct run *r, struct error *e)
         struct run_device *d = r->device;
         if (ops_ghosts_make(d->ops, &d->arena[a], &d->ghosts[a], &r->plan->scene->box, margin, e)) {
             struct error why = {0};
-            if (places_there(r, &why) == 0)
+            bool lost;
+            if (!run_device_failed(r, &lost) && places_there(r, &why) == 0)
                 watch_no_ghosts(r, e);
             return -1;
         }

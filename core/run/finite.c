@@ -103,7 +103,10 @@ bool finite_finished(const struct run *r, const struct pass *p, size_t array, in
     return true;
 }
 
-static int check(const struct run *r, const struct pass *p, bool trace, struct error *e)
+/* LATE: after all passes of the moment: what a later pass has made anew is that one's. */
+enum when { AT_ONCE, LATE, TRACE };
+
+static int check(const struct run *r, const struct pass *p, enum when when, struct error *e)
 {
     const struct plan_array *a = &r->plan->array[p->dst.array];
     for (uint32_t k = 0; k < p->use.item->props.count; k++) {
@@ -111,9 +114,8 @@ static int check(const struct run *r, const struct pass *p, bool trace, struct e
         const int column = p->dst.column[k];
         size_t i = 0;
         double value = 0.0;
-        if (column >= 0 &&
-            (trace ? finite_finished(r, p, p->dst.array, column, true)
-                   : !(prop->access & SPH_WORK)) &&
+        if (column >= 0 && (when == TRACE || !(prop->access & SPH_WORK)) &&
+            (when == AT_ONCE || finite_finished(r, p, p->dst.array, column, true)) &&
             pass_writes(p, p->dst.array, column) && find_bad(a, column, false, &i, &value))
             return tell(r, p->name, a, column, i, value, e);
     }
@@ -122,7 +124,12 @@ static int check(const struct run *r, const struct pass *p, bool trace, struct e
 
 int finite_pass(const struct run *r, const struct pass *p, struct error *e)
 {
-    return check(r, p, false, e);
+    return check(r, p, AT_ONCE, e);
+}
+
+int finite_pass_late(const struct run *r, const struct pass *p, struct error *e)
+{
+    return check(r, p, LATE, e);
 }
 
 int finite_trace(const struct run *r, struct error *e)
@@ -130,7 +137,7 @@ int finite_trace(const struct run *r, struct error *e)
     static const enum moment order[] = {MOMENT_EVALUATE, MOMENT_FINISH, MOMENT_START};
     for (size_t m = 0; m < sizeof order / sizeof order[0]; m++)
         for (size_t i = 0; i < r->plan->n_pass; i++)
-            if (r->plan->pass[i].moment == order[m] && check(r, &r->plan->pass[i], true, e))
+            if (r->plan->pass[i].moment == order[m] && check(r, &r->plan->pass[i], TRACE, e))
                 return -1;
     return 0;
 }

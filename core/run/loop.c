@@ -202,10 +202,10 @@ static int loop_begin(struct loop *l, struct plan *plan, struct error *e)
     l->scene_text = cJSON_Print(s->doc->root);
     if (!l->scene_text)
         return error_memory(e, "the scene's text", s->doc->length);
-    if (run_init(&l->run, plan, l->options->threads, l->options->path, l->options->audit, e))
-        return -1;
     l->checkpointed = UINT64_MAX;
-    l->refused = l->options->resume && loop_resume(l, e);
+    l->refused =
+        run_init(&l->run, plan, l->options->threads, l->options->path, l->options->audit, e) ||
+        (l->options->resume ? loop_resume(l, e) : output_clear(l->out, e));
     if (l->refused)
         return -1;
     char *path = output_path(l->out, "log.csv");
@@ -220,11 +220,28 @@ static int loop_begin(struct loop *l, struct plan *plan, struct error *e)
     return status;
 }
 
+/* When a device failed, and what is left. */
+static void tell_device(const struct loop *l, struct error *e)
+{
+    bool lost;
+    if (!run_device_failed(&l->run, &lost))
+        return;
+    error_prefix(e, "step %llu, t = %g", (unsigned long long)l->run.step, l->run.time);
+    if (l->checkpointed != UINT64_MAX)
+        error_set(e, (enum exit_code)e->exit_code,
+                  "%s; the last checkpoint is of step %llu: --resume latest goes on from there",
+                  e->text, (unsigned long long)l->checkpointed);
+}
+
 /* Keeps the state in which the run failed; its own failures are not worth a second sentence. */
 static void keep_failed(struct loop *l, const struct error *e)
 {
     struct error ignored = {0};
-    if (l->run.step > 0 || (l->run.watch && l->run.watch->failure.happened)) {
+    bool lost;
+    run_device_failed(&l->run, &lost);
+    if (lost) {
+        /* The columns here are of different times. */
+    } else if (l->run.step > 0 || (l->run.watch && l->run.watch->failure.happened)) {
         loop_snapshot(l, &ignored);
         loop_checkpoint_failed(l, e->text, &ignored);
     }
@@ -248,8 +265,10 @@ int loop_run(struct plan *plan, const struct output *out, const struct loop_opti
         status = loop_draw(&l, e);
     if (!status)
         status = loop_summarise(&l, o->stop && *o->stop ? "stopped" : "done", NULL, e);
-    else if (l.run.plan && !l.refused)
+    else if (l.run.plan && !l.refused) {
+        tell_device(&l, e);
         keep_failed(&l, e);
+    }
     struct error ignored = {0};
     log_close(&l.log, &ignored);
     measures_close(&l.measures, &ignored);

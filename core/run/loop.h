@@ -19,7 +19,8 @@ struct loop_options {
     struct resume *resume;    /* a checkpoint to go on from; the plan is not filled; NULL: none */
 };
 
-/* Runs to the end and writes everything. On failure what was written stays good, the state is kept as a snapshot
+/* Runs to the end and writes everything. What an earlier run left in the claimed folder goes once nothing can
+ * refuse this one any longer. On failure what was written stays good, the state is kept as a snapshot
  * and in checkpoint_failed.h5, and summary.json tells the reason. */
 int loop_run(struct plan *plan, const struct output *out, const struct loop_options *o,
              struct error *e);

@@ -95,10 +95,7 @@ int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool 
     }
     if (hold(plan, e) || watch_open(r, e))
         return -1;
-    if (plan->on_device && audit)
-        return error_set(e, EXIT_USAGE,
-                         "--audit watches what plugins do on the processor: leave --device out");
-    if (plan->on_device && run_device_open(r, e))
+    if (run_check(plan, path, audit, e) || (plan->on_device && run_device_open(r, e)))
         return -1;
     return audit ? audit_open(r, e) : 0;
 }

@@ -77,6 +77,10 @@ struct run {
 int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool audit,
              struct error *e);
 void run_free(struct run *r);
+/* Before it, and before any file is written: the device can take the run, if it is to be on one. */
+int run_check(const struct plan *plan, uint32_t path, bool audit, struct error *e);
+/* Whether the run's device has failed; *lost: nothing comes back from it. */
+bool run_device_failed(const struct run *r, bool *lost);
 /* run_store.c: all that the next step builds on goes into a checkpoint or comes out of it, as it is. Reading:
  * into a run that has just been initialised. */
 int run_store(struct run *r, struct store *s, struct error *e);
@@ -161,6 +165,8 @@ int run_look(struct run *r, struct error *e);
 /* finite.c: each fails (EXIT_RUN) naming pass, property, particle and place. What a pass has
  * just written (working storage aside, which may hold anything) is a number. */
 int finite_pass(const struct run *r, const struct pass *p, struct error *e);
+/* ... after all passes of its moment. */
+int finite_pass_late(const struct run *r, const struct pass *p, struct error *e);
 /* After an evaluation: all rates are finite. */
 int finite_rates(struct run *r, struct error *e);
 /* When something else is no number: the first pass of which something is. 0: there is none. */

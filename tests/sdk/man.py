@@ -30,7 +30,8 @@ headers = {os.path.basename(f): open(f).read() for f in glob.glob(os.path.join(s
 text = "".join(body for name, body in headers.items() if name != "pair-device.h")
 names = set(re.findall(r"#define (SPH_(?:KIND|EXT|DST|SRC)_\w+|SPH_WORK|SPH_E_\w+)", text))
 names |= set(re.findall(r"#define (SPH_(?:SCALAR|VECTOR|SYM|MATRIX|INT32|INT64|F32|F64|LANES|HAS|PLUGIN))\b", text))
-public = "".join(body for name, body in headers.items() if not name.startswith("pair-"))
+public = "".join(body for name, body in headers.items()
+                 if not name.startswith(("pair-", "point-")))
 names |= set(re.findall(r"#define (SPH_\w+)\([^)]*\) *\\?\n *\{", public)) - {"SPH_LIST"}
 names |= set(re.findall(r"\b(sph_\w+)\(", headers["lanes.h"].split("*/")[0]))
 batch = re.search(r"typedef struct sph_batch \{(.*?)\} sph_batch;", headers["batch.h"], re.S).group(1)

@@ -94,6 +94,7 @@ static inline void copy(struct particles *to, const struct particles *from)
 static inline void put_all(struct arena *a)
 {
     for (size_t c = 0; c < a->p->n_column; c++) {
+        arena_written_there(a, (int)c);
         OK(arena_put(a, (int)c, &why));
         assert_true(a->here[c] && a->there[c]);
     }
@@ -101,8 +102,10 @@ static inline void put_all(struct arena *a)
 
 static inline void get_all(struct arena *a)
 {
-    for (size_t c = 0; c < a->p->n_column; c++)
+    for (size_t c = 0; c < a->p->n_column; c++) {
+        arena_written_here(a, (int)c);
         OK(arena_get(a, (int)c, &why));
+    }
 }
 
 static inline void open_arena(struct arena *a, struct particles *p)

@@ -285,17 +285,17 @@ static void test_out_of_memory(void **state)
     assert_int_equal(device_reserve(d, &a, 1000001, "neighbour lists", &e), -1);
     assert_int_equal(e.exit_code, EXIT_RUN);
     SAYS(
-        "has no room for the neighbour lists: 1000064 bytes, where one buffer has at most 1000000");
+        "has no room for neighbour lists: 1000064 bytes, where one buffer has at most 1000000");
     assert_int_equal(device_reserve(d, &a, 600000, "particles", &e), 0);
     assert_int_equal(device_reserve(d, &b, 600000, "neighbour lists", &e), -1);
-    SAYS("no room for the neighbour lists: 600064 bytes beside the 600064 in use, of 1000000");
+    SAYS("no room for neighbour lists: 600064 bytes beside the 600064 in use, of 1000000");
     assert_int_equal(device_reserve(d, &a, 900000, "particles", &e), 0);
     device_release(d, &a);
     assert_int_equal(device_reserve(d, &b, SIZE_MAX - 7, "all", &e), -1);
     no_fault(d);
     d = faulty("clCreateBuffer:1:-4");
     assert_int_equal(device_reserve(d, &a, 600000, "particles", &e), -1);
-    SAYS("gives no room for the particles, 600064 bytes");
+    SAYS("gives no room for particles, 600064 bytes");
     SAYS("CL_MEM_OBJECT_ALLOCATION_FAILURE (-4)");
     assert_int_equal(device_bytes(d, NULL), 0);
     assert_int_equal(device_reserve(d, &a, 600000, "particles", &e), 0);

@@ -132,6 +132,7 @@ static void test_operations(void **state)
                 for (size_t i = 0; i < p.n && i < 20; i += 3) {
                     const double old = column_get(&p.column[F], 0, p.n - 1 - i);
                     column_set(&p.column[F], 0, p.n - 1 - i, NAN);
+                    arena_written_there(&a, F);
                     OK(arena_put(&a, F, &why));
                     OK(ops_advance(ops[dim], &a, &pa, &(struct op)KICK(0.5), 0, 1, 0.1, &bad,
                                    &why));

@@ -73,6 +73,7 @@ static void test_mirror(void **state)
             assert_int_equal(flags, 0);
             if (p.n) {
                 column_set(&p.column[X], (uint32_t)dim - 1, p.n - 1, s % 2 ? NAN : 3.5);
+                arena_written_there(&a, X);
                 OK(arena_put(&a, X, &why));
                 OK(ops_mirror_places(ops[dim], &a, X, centre, quantum, &why));
                 OK(ops_flags(ops[dim], &flags, &why));

@@ -34,38 +34,17 @@ static const sph_param params[] = {
     SPH_PARAM("tau", "s", "time in which the velocity falls to 1/e there", NAN, 1e-300, 1e300),
 };
 
-/* Component c of a column: the components lie in planes, one behind the other. */
-static double *plane(const sph_column *column, uint32_t c)
-{
-    return (double *)column->data + (size_t)c * column->plane;
-}
-
-static double strength(double x, double from, double to)
-{
-    /* A layer of no thickness is a step; from > to is a layer on the low side. */
-    const double s = from == to ? (x >= to) : (x - from) / (to - from);
-
-    return fmin(fmax(s, 0), 1);
-}
-
-/* For the particles first ... first + count - 1. Many threads do this at once, each with a range of
- * its own: nothing is kept between calls. */
-static sph_status damp(const sph_batch *b)
-{
-    const double *x = plane(&b->dst[X], 0);
-
-    /* Columns are double or float, as the host chooses; this loop knows double. */
-    if (b->real != SPH_F64)
-        return b->host->fail(b->host, SPH_E_UNKNOWN, "my-plugin works in double precision");
-    for (uint64_t i = b->first; i < b->first + b->count; i++) {
-        const double s = strength(x[i], b->param[FROM], b->param[TO]);
-        const double left = exp(-s * s * b->dt / b->param[TAU]);
-
-        for (uint32_t c = 0; c < b->dim; c++)
-            plane(&b->dst[V], c)[i] *= left;
-    }
-    return SPH_OK;
-}
+/* What is done for one particle stands in damp.body.h. point-loop.h makes of it the function `damp`, for a
+ * range of particles: P(vector, name, NUMBER) gives that the property NUMBER; it reads what stands in
+ * _IN, reads and sets what stands in _INOUT. Many threads do this at once, each with a range of its own:
+ * nothing is kept between calls. SPH_POINT_DEVICE: the same body, as text for OpenCL devices. */
+#define SPH_POINT_LOOP damp
+#define SPH_POINT_IN(P) P(vector, x, X)
+#define SPH_POINT_INOUT(P) P(vector, v, V)
+#define SPH_POINT_PARAM(P) P(from, FROM) P(to, TO) P(tau, TAU)
+#define SPH_POINT_BODY "damp.body.h"
+#define SPH_POINT_DEVICE damp_on_device
+#include <sph/point-loop.h>
 
 static const sph_item damp_item = {
     .size = SIZE(sph_item),
@@ -82,6 +61,7 @@ static const sph_function damp_function = {
     .item = &damp_item,
     .run = damp,
     .reach_scale = 1.0,
+    .device_run = &damp_on_device,
 };
 
 /* SPH_AT_FINISH: after every step, when b->dt is the step that was taken. Other moments are the

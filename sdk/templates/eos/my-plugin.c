@@ -38,49 +38,25 @@ static const sph_prop inverse_props[] = {
     SPH_PROP("u", "J/kg", "specific internal energy", SPH_SCALAR, SPH_DST_WRITE, 0),
 };
 
-/* Columns are double or float, as the host chooses; these loops know double. */
-static sph_status only_double(const sph_batch *b)
-{
-    return b->host->fail(b->host, SPH_E_UNKNOWN, "my-plugin works in double precision");
-}
+#define TOO_DENSE "my-plugin: the density exceeds 1 / covolume"
 
-/* A gas that is compressed beyond its covolume has no state; the run ends with this sentence. */
-static sph_status too_dense(const sph_batch *b)
-{
-    return b->host->fail(b->host, SPH_E_NUMERIC, "my-plugin: the density exceeds 1 / covolume");
-}
+/* What is done for one particle stands in my-plugin.body.h. point-loop.h makes of it the function `run`,
+ * for a range of particles: X(scalar, name, NUMBER) gives that the property NUMBER; it reads what stands
+ * in _IN, and sets what stands in _OUT. SPH_POINT_DEVICE: the same body, as text for OpenCL devices. */
+#define SPH_POINT_LOOP run
+#define SPH_POINT_IN(X) X(scalar, rho, RHO) X(scalar, u, U)
+#define SPH_POINT_OUT(X) X(scalar, p, P) X(scalar, cs, CS)
+#define SPH_POINT_PARAM(X) X(gamma, GAMMA) X(covolume, COVOLUME)
+#define SPH_POINT_FAIL TOO_DENSE
+#define SPH_POINT_BODY "my-plugin.body.h"
+#define SPH_POINT_DEVICE run_on_device
+#include <sph/point-loop.h>
 
 /* For the particles first ... first + count - 1. Many threads do this at once, each with a range of
  * its own: nothing is kept between calls. */
-static sph_status run(const sph_batch *b)
-{
-    const double gamma = b->param[GAMMA], covolume = b->param[COVOLUME];
-
-    if (b->real != SPH_F64)
-        return only_double(b);
-
-    const double *rho = (const double *)b->dst[RHO].data;
-    const double *u = (const double *)b->dst[U].data;
-    double *p = (double *)b->dst[P].data;
-    double *cs = (double *)b->dst[CS].data;
-
-    for (uint64_t i = b->first; i < b->first + b->count; i++) {
-        const double room = 1 - covolume * rho[i];
-
-        if (!(room > 0))
-            return too_dense(b);
-        p[i] = (gamma - 1) * rho[i] * u[i] / room;
-        cs[i] = sqrt(gamma * fmax(p[i], 0) / (rho[i] * room));
-    }
-    return SPH_OK;
-}
-
 static sph_status inverse(const sph_batch *b)
 {
     const double gamma = b->param[GAMMA], covolume = b->param[COVOLUME];
-
-    if (b->real != SPH_F64)
-        return only_double(b);
 
     const double *rho = (const double *)b->dst[INVERSE_RHO].data;
     const double *p = (const double *)b->dst[INVERSE_P].data;
@@ -88,7 +64,7 @@ static sph_status inverse(const sph_batch *b)
 
     for (uint64_t i = b->first; i < b->first + b->count; i++) {
         if (!(covolume * rho[i] < 1))
-            return too_dense(b);
+            return b->host->fail(b->host, SPH_E_NUMERIC, TOO_DENSE);
         u[i] = p[i] * (1 - covolume * rho[i]) / ((gamma - 1) * rho[i]);
     }
     return SPH_OK;
@@ -109,6 +85,7 @@ static const sph_eos eos = {
     .run = run,
     .inverse = inverse,
     .inverse_props = SPH_LIST(inverse_props),
+    .device = &run_on_device,
 };
 
 /* Called once, when the plugin is loaded. It registers, and does nothing else. */

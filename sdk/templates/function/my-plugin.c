@@ -54,18 +54,17 @@ static const sph_param spread_params[] = {
 #define SPH_LOOP_DEVICE spread_on_device /* the same body, as text for OpenCL devices */
 #include <sph/pair-loop.h>
 
-/* After the sweep, for each destination of the batch: what explicit steps of diffusion may take. A
- * batch is a range of particles; many threads work on one each, so that nothing is kept between
- * calls and no other particle is written to. */
-static sph_status limit(const sph_batch *b)
-{
-    const double *h = (const double *)b->h_dst.data;
-    double *dt = (double *)b->dst[DT].data;
-
-    for (uint64_t i = b->first; i < b->first + b->count; i++)
-        dt[i] = h[i] * h[i] / fmax(b->param[DIFFUSIVITY], 1e-300);
-    return SPH_OK;
-}
+/* After the sweep, each destination alone. point-loop.h makes `limit` out of what is done for one
+ * particle, limit.body.h. P(scalar, name, NUMBER) gives that the property NUMBER, as do vector and the
+ * like; it reads what stands in _IN, sets what stands in _OUT; _H gives it h. Many threads work on a
+ * range of particles each, so that nothing is kept between calls and no other particle is written to. */
+#define SPH_POINT_LOOP limit
+#define SPH_POINT_OUT(P) P(scalar, dt, DT)
+#define SPH_POINT_PARAM(P) P(diffusivity, DIFFUSIVITY)
+#define SPH_POINT_H
+#define SPH_POINT_BODY "limit.body.h"
+#define SPH_POINT_DEVICE limit_on_device
+#include <sph/point-loop.h>
 
 /* c is advanced with dc, like a velocity with an acceleration. */
 static const sph_rate rates[] = {SPH_RATE("c", "dc", SPH_KICK)};
@@ -96,6 +95,7 @@ static const sph_function spread_function = {
     .rates = SPH_LIST(rates),
     .reductions = SPH_LIST(reductions),
     .device = &spread_on_device,
+    .device_after = &limit_on_device,
 };
 
 /* -- The point function -------- */
@@ -111,18 +111,14 @@ static const sph_param decay_params[] = {
     SPH_PARAM("tau", "s", "time in which it falls to 1/e", NAN, 1e-300, 1e300),
 };
 
-static sph_status decay(const sph_batch *b)
-{
-    const double *c = (const double *)b->dst[DECAY_C].data;
-    double *dc = (double *)b->dst[DECAY_DC].data;
-
-    /* Columns are double or float, as the host chooses; this loop knows double. */
-    if (b->real != SPH_F64)
-        return b->host->fail(b->host, SPH_E_UNKNOWN, "my-plugin-decay works in double precision");
-    for (uint64_t i = b->first; i < b->first + b->count; i++)
-        dc[i] -= c[i] / b->param[TAU];
-    return SPH_OK;
-}
+/* _INOUT: it reads and sets them. */
+#define SPH_POINT_LOOP decay
+#define SPH_POINT_IN(P) P(scalar, c, DECAY_C)
+#define SPH_POINT_INOUT(P) P(scalar, dc, DECAY_DC)
+#define SPH_POINT_PARAM(P) P(tau, TAU)
+#define SPH_POINT_BODY "decay.body.h"
+#define SPH_POINT_DEVICE decay_on_device
+#include <sph/point-loop.h>
 
 static const sph_item decay_item = {
     .size = SIZE(sph_item),
@@ -140,6 +136,7 @@ static const sph_function decay_function = {
     .run = decay,
     .reach_scale = 1.0,
     .rates = SPH_LIST(rates),
+    .device_run = &decay_on_device,
 };
 
 /* -- The plugin -------- */

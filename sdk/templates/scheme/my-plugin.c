@@ -18,12 +18,6 @@
 
 #define SIZE(type) (uint32_t)sizeof(type)
 
-/* Component c of a column: the components lie in planes, one behind the other. */
-static double *plane(const sph_column *column, uint32_t c)
-{
-    return (double *)column->data + (size_t)c * column->plane;
-}
-
 /* -- Density --------
  *
  * A scheme is a recipe of functions. This is the first one: a sum over neighbours. It lists the
@@ -100,18 +94,18 @@ static const sph_param rates_params[] = {
 #define SPH_LOOP_DEVICE rates_on_device
 #include <sph/pair-loop.h>
 
-/* After the sweep, for each destination of the batch: the time step. A batch is a range of
- * particles; many threads work on one each, so that nothing is kept between calls. */
-static sph_status rates_after(const sph_batch *b)
-{
-    const double alpha = b->param[ALPHA], beta = b->param[BETA];
-    const double *h = plane(&b->h_dst, 0), *cs = plane(&b->dst[CS], 0), *mu = plane(&b->dst[MU], 0);
-    double *dt = plane(&b->dst[DT], 0);
-
-    for (uint64_t i = b->first; i < b->first + b->count; i++)
-        dt[i] = h[i] / (cs[i] + 0.6 * (alpha * cs[i] + beta * mu[i]));
-    return SPH_OK;
-}
+/* After the sweep, each destination alone. point-loop.h makes `time_step` out of what is done for one
+ * particle, time_step.body.h. P(scalar, name, NUMBER) gives that the property NUMBER, as do vector and
+ * the like; it reads what stands in _IN, sets what stands in _OUT; _H gives it h. Many threads work on
+ * a range of particles each, so that nothing is kept between calls. */
+#define SPH_POINT_LOOP time_step
+#define SPH_POINT_IN(X) X(scalar, cs, CS) X(scalar, fastest, MU)
+#define SPH_POINT_OUT(X) X(scalar, dt, DT)
+#define SPH_POINT_PARAM(X) X(alpha, ALPHA) X(beta, BETA)
+#define SPH_POINT_H
+#define SPH_POINT_BODY "time_step.body.h"
+#define SPH_POINT_DEVICE time_step_on_device
+#include <sph/point-loop.h>
 
 /* What is the rate of what: integrators act on this table alone. */
 static const sph_rate rates_rates[] = {
@@ -139,12 +133,13 @@ static const sph_function rates_function = {
     .shape = SPH_PAIR,
     .item = &rates_item,
     .run = rates_sweep,
-    .after = rates_after,
+    .after = time_step,
     .reach = SPH_SYMMETRIC,
     .reach_scale = 1.0,
     .rates = SPH_LIST(rates_rates),
     .reductions = SPH_LIST(rates_reductions),
     .device = &rates_on_device,
+    .device_after = &time_step_on_device,
 };
 
 /* -- Smoothing lengths --------
@@ -161,18 +156,13 @@ static const sph_param length_params[] = {
     SPH_PARAM("eta", "", "smoothing length in units of (m / rho)^(1/d)", 1.3, 1, 4),
 };
 
-static sph_status length(const sph_batch *b)
-{
-    const double *m = plane(&b->dst[LENGTH_M], 0), *rho = plane(&b->dst[LENGTH_RHO], 0);
-    double *h = plane(&b->dst[LENGTH_H], 0);
-
-    /* Columns are double or float, as the host chooses; this loop knows double. */
-    if (b->real != SPH_F64)
-        return b->host->fail(b->host, SPH_E_UNKNOWN, "my-plugin works in double precision");
-    for (uint64_t i = b->first; i < b->first + b->count; i++)
-        h[i] = b->param[ETA] * pow(m[i] / rho[i], 1.0 / b->dim);
-    return SPH_OK;
-}
+#define SPH_POINT_LOOP length
+#define SPH_POINT_IN(X) X(scalar, m, LENGTH_M) X(scalar, rho, LENGTH_RHO)
+#define SPH_POINT_OUT(X) X(scalar, h, LENGTH_H)
+#define SPH_POINT_PARAM(X) X(eta, ETA)
+#define SPH_POINT_BODY "length.body.h"
+#define SPH_POINT_DEVICE length_on_device
+#include <sph/point-loop.h>
 
 static const sph_item length_item = {
     .size = SIZE(sph_item),
@@ -189,6 +179,7 @@ static const sph_function length_function = {
     .item = &length_item,
     .run = length,
     .reach_scale = 1.0,
+    .device_run = &length_on_device,
 };
 
 /* -- The scheme --------

@@ -29,21 +29,19 @@ static const sph_prop props[] = {
 #define SPH_LOOP_SUM(S, V, MATRIX) S(rate, RATE)
 #define SPH_LOOP_REACH SPH_SYMMETRIC
 #define SPH_LOOP_BODY "conduction.body.h"
+#define SPH_LOOP_DEVICE sweep_on_device
 #include <sph/pair-loop.h>
 
-/* After the sweep, each destination alone. */
-static sph_status finish(const sph_batch *b)
-{
-    const double *h = b->h_dst.data, *rho = b->dst[DENSITY].data, *c = b->dst[CAPACITY].data;
-    const double *k = b->dst[CONDUCTIVITY].data, *temperature = b->dst[TEMPERATURE].data;
-    double *heat = b->dst[HEAT].data, *step = b->dst[STEP].data;
-
-    for (uint64_t i = b->first; i < b->first + b->count; i++) {
-        heat[i] = c[i] * temperature[i];
-        step[i] = rho[i] * c[i] * h[i] * h[i] / k[i];
-    }
-    return SPH_OK;
-}
+/* After the sweep, each destination alone: makes `finish`, from finish.body.h. */
+#define SPH_POINT_LOOP finish
+#define SPH_POINT_IN(P)                                                                            \
+    P(scalar, rho, DENSITY)                                                                        \
+    P(scalar, c, CAPACITY) P(scalar, k, CONDUCTIVITY) P(scalar, temperature, TEMPERATURE)
+#define SPH_POINT_OUT(P) P(scalar, heat, HEAT) P(scalar, step, STEP)
+#define SPH_POINT_H
+#define SPH_POINT_BODY "finish.body.h"
+#define SPH_POINT_DEVICE finish_on_device
+#include <sph/point-loop.h>
 
 static const sph_rate rates[] = {SPH_RATE("T", "dT", SPH_KICK)};
 static const sph_reduction reductions[] = {
@@ -69,6 +67,8 @@ static const sph_function function = {
     .reach_scale = 1.0,
     .rates = SPH_LIST(rates),
     .reductions = SPH_LIST(reductions),
+    .device = &sweep_on_device,
+    .device_after = &finish_on_device,
 };
 
 /* -- The scheme -------------------------------------------------------------------------------- */

@@ -20,25 +20,14 @@ static const sph_prop props[] = {
     SPH_PROP("copies", "", "how many copies to make", SPH_INT32, SPH_DST_WRITE | SPH_WORK, 0),
 };
 
-static sph_status run(const sph_batch *b)
-{
-    const double *x = b->dst[X].data;
-    int32_t *released = b->dst[RELEASED].data, *leaves = b->dst[LEAVES].data;
-    int32_t *copies = b->dst[COPIES].data;
-
-    if (b->real != SPH_F64)
-        return b->host->fail(b->host, SPH_E_UNKNOWN, "fountain works in double precision");
-    for (uint64_t i = b->first; i < b->first + b->count; i++) {
-        leaves[i] = x[i] >= b->param[OUTLET];
-        copies[i] = 0;
-        if (!released[i] && x[i] >= b->param[INLET]) {
-            /* Further in one step than the reservoir is long: a copy for each length. */
-            copies[i] = (int32_t)floor((x[i] - b->param[INLET]) / b->param[LENGTH]) + 1;
-            released[i] = 1;
-        }
-    }
-    return SPH_OK;
-}
+#define SPH_POINT_LOOP run
+#define SPH_POINT_IN(P) P(vector, x, X)
+#define SPH_POINT_INOUT(P) P(int32, released, RELEASED)
+#define SPH_POINT_OUT(P) P(int32, leaves, LEAVES) P(int32, copies, COPIES)
+#define SPH_POINT_PARAM(P) P(inlet, INLET) P(length, LENGTH) P(outlet, OUTLET)
+#define SPH_POINT_BODY "fountain.body.h"
+#define SPH_POINT_DEVICE fountain_device
+#include <sph/point-loop.h>
 
 enum { BORN_X, BORN_RELEASED, BORN_NUMBER };
 static const sph_prop born_props[] = {
@@ -75,6 +64,7 @@ static const sph_function function = {
     .shape = SPH_POINT,
     .item = &item,
     .run = run,
+    .device_run = &fountain_device,
     .reach_scale = 1,
 };
 static const sph_population population = {
@@ -108,11 +98,11 @@ enum { V };
 static const sph_prop drift_props[] = {
     SPH_PROP("v", "m/s", "velocity", SPH_VECTOR, SPH_DST_READ, NAN),
 };
-static sph_status drift(const sph_batch *b)
-{
-    (void)b;
-    return SPH_OK;
-}
+#define SPH_POINT_LOOP drift
+#define SPH_POINT_BODY "drift.body.h"
+#define SPH_POINT_DEVICE drift_device
+#include <sph/point-loop.h>
+
 static const sph_item drift_item = {
     .size = SIZE(sph_item),
     .dims = SPH_ALL_DIMS,
@@ -126,6 +116,7 @@ static const sph_function drift_function = {
     .shape = SPH_POINT,
     .item = &drift_item,
     .run = drift,
+    .device_run = &drift_device,
     .reach_scale = 1,
 };
 static const sph_step drift_steps[] = {SPH_STEP(SPH_AT_EVALUATE, "fountain-drift")};

@@ -5,7 +5,8 @@
 #include "piston.h"
 
 struct path {
-    const sph_table *table;
+    struct motion now;      /* at the time of the pass */
+    const sph_table *table; /* NULL: the speed is constant */
     const double *t, *v;
 };
 
@@ -27,13 +28,13 @@ static sph_status create(const sph_host *host, const sph_config *c, uint32_t dim
     (void)dim;
     if (!tables)
         return host->fail(host, SPH_E_UNKNOWN, "this sph has no tables, which \"path\" needs");
-    if (!p.table)
-        return SPH_OK; /* the speed is a number */
-    p.t = sph_table_column(p.table, "t");
-    p.v = sph_table_column(p.table, "v");
-    const sph_status status = check(host, &p);
-    if (status != SPH_OK)
-        return status;
+    if (p.table) {
+        p.t = sph_table_column(p.table, "t");
+        p.v = sph_table_column(p.table, "v");
+        const sph_status status = check(host, &p);
+        if (status != SPH_OK)
+            return status;
+    }
     struct path *kept = malloc(sizeof *kept);
     if (!kept)
         return SPH_E_NOMEM;
@@ -74,11 +75,15 @@ static struct motion along(const struct path *p, double time)
     return m;
 }
 
-struct motion piston_motion(const sph_batch *b, double time)
+sph_status piston_prepare(const sph_batch *b)
 {
-    if (!b->state)
-        return (struct motion){b->param[SPEED] * time, b->param[SPEED], 0};
-    struct motion m = along(b->state, time);
-    m.way -= along(b->state, 0).way;
-    return m;
+    struct path *p = b->state;
+
+    if (p->table) {
+        p->now = along(p, b->time);
+        p->now.way -= along(p, 0).way;
+    } else {
+        p->now = (struct motion){b->param[SPEED] * b->time, b->param[SPEED], 0};
+    }
+    return SPH_OK;
 }

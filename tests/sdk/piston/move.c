@@ -18,24 +18,14 @@ static const sph_prop start_props[] = {
     SPH_PROP("v", "m/s", "velocity", SPH_VECTOR, SPH_DST_WRITE, 0),
 };
 
-static sph_status start(const sph_batch *b)
-{
-    const struct motion now = piston_motion(b, b->time);
-    const double *m = b->dst[START_M].data, *rho = b->dst[START_RHO].data;
-    double *volume = b->dst[START_VOLUME].data;
-
-    if (b->real != SPH_F64)
-        return b->host->fail(b->host, SPH_E_UNKNOWN, "piston works in double precision");
-    for (uint64_t i = b->first; i < b->first + b->count; i++) {
-        volume[i] = m[i] / rho[i];
-        for (uint32_t c = 0; c < b->dim; c++) {
-            const double x = piston_plane(&b->dst[START_X], c)[i];
-            piston_plane(&b->dst[START_HOME], c)[i] = c == 0 ? x - now.way : x;
-            piston_plane(&b->dst[START_V], c)[i] = c == 0 ? now.speed : 0;
-        }
-    }
-    return SPH_OK;
-}
+#define SPH_POINT_LOOP start
+#define SPH_POINT_IN(P) P(vector, x, START_X) P(scalar, m, START_M) P(scalar, rho, START_RHO)
+#define SPH_POINT_OUT(P)                                                                           \
+    P(vector, home, START_HOME) P(scalar, volume, START_VOLUME) P(vector, v, START_V)
+#define SPH_POINT_STATE(P) P(way, NOW_WAY) P(speed, NOW_SPEED)
+#define SPH_POINT_BODY "start.body.h"
+#define SPH_POINT_DEVICE start_device
+#include <sph/point-loop.h>
 
 static const sph_item start_item = {
     .size = SIZE(sph_item),
@@ -53,6 +43,8 @@ const sph_function piston_start = {
     .life = &piston_life,
     .run = start,
     .reach_scale = 1,
+    .prepare = piston_prepare,
+    .device_run = &start_device,
 };
 
 /* -- At each evaluation, behind the scheme's rates: the path's own. And the step that it allows. */
@@ -74,31 +66,26 @@ static sph_status propose(const sph_batch *b)
 {
     const sph_reductions *reductions = b->host->extension(b->host, SPH_EXT_REDUCTIONS);
     const sph_time_step *time_step = b->host->extension(b->host, SPH_EXT_TIME_STEP);
-    const struct motion now = piston_motion(b, b->time);
+    const struct motion *now = b->state;
 
+    piston_prepare(b);
     if (!reductions || !time_step)
         return b->host->fail(b->host, SPH_E_UNKNOWN,
                              "piston needs the extensions reductions and time-step of sph");
     const double h = reductions->value(b, "piston-state", "h_near");
-    const double speed = fabs(now.speed) + fabs(now.acceleration) * b->dt;
+    const double speed = fabs(now->speed) + fabs(now->acceleration) * b->dt;
     /* No gas within reach: h is infinite, and there is nothing to be careful of. */
     if (!isfinite(h) || !(speed > 0))
         return SPH_OK;
     return time_step->propose(b, b->param[STEP] * h / speed);
 }
 
-static sph_status still(const sph_batch *b)
-{
-    const struct motion now = piston_motion(b, b->time);
-    double *du = b->dst[STILL_DU].data;
-
-    for (uint64_t i = b->first; i < b->first + b->count; i++) {
-        du[i] = 0;
-        for (uint32_t c = 0; c < b->dim; c++)
-            piston_plane(&b->dst[STILL_A], c)[i] = c == 0 ? now.acceleration : 0;
-    }
-    return SPH_OK;
-}
+#define SPH_POINT_LOOP still
+#define SPH_POINT_OUT(P) P(vector, a, STILL_A) P(scalar, du, STILL_DU)
+#define SPH_POINT_STATE(P) P(acceleration, NOW_ACCELERATION)
+#define SPH_POINT_BODY "still.body.h"
+#define SPH_POINT_DEVICE still_device
+#include <sph/point-loop.h>
 
 static const sph_item still_item = {
     .size = SIZE(sph_item),
@@ -117,6 +104,7 @@ const sph_function piston_still = {
     .run = still,
     .reach_scale = 1,
     .prepare = propose,
+    .device_run = &still_device,
 };
 
 /* -- After each step: exactly where the path says. */
@@ -128,18 +116,13 @@ static const sph_prop place_props[] = {
     SPH_PROP("v", "m/s", "velocity", SPH_VECTOR, SPH_DST_WRITE, 0),
 };
 
-static sph_status place(const sph_batch *b)
-{
-    const struct motion now = piston_motion(b, b->time);
-
-    for (uint64_t i = b->first; i < b->first + b->count; i++)
-        for (uint32_t c = 0; c < b->dim; c++) {
-            const double home = piston_plane(&b->dst[PLACE_HOME], c)[i];
-            piston_plane(&b->dst[PLACE_X], c)[i] = c == 0 ? home + now.way : home;
-            piston_plane(&b->dst[PLACE_V], c)[i] = c == 0 ? now.speed : 0;
-        }
-    return SPH_OK;
-}
+#define SPH_POINT_LOOP place
+#define SPH_POINT_IN(P) P(vector, home, PLACE_HOME)
+#define SPH_POINT_OUT(P) P(vector, x, PLACE_X) P(vector, v, PLACE_V)
+#define SPH_POINT_STATE(P) P(way, NOW_WAY) P(speed, NOW_SPEED)
+#define SPH_POINT_BODY "place.body.h"
+#define SPH_POINT_DEVICE place_device
+#include <sph/point-loop.h>
 
 static const sph_item place_item = {
     .size = SIZE(sph_item),
@@ -157,4 +140,6 @@ const sph_function piston_place = {
     .life = &piston_life,
     .run = place,
     .reach_scale = 1,
+    .prepare = piston_prepare,
+    .device_run = &place_device,
 };

@@ -1,4 +1,4 @@
-/* piston.h -- what the piston's functions share: its motion, and how columns are read. */
+/* piston.h -- what the piston's functions share: its motion. */
 #ifndef PISTON_H
 #define PISTON_H
 
@@ -6,10 +6,12 @@
 
 #define SIZE(type) (uint32_t)sizeof(type)
 
-/* The motion along x at one time: way [m] since time 0, speed [m/s], acceleration [m/s^2]. */
+/* The motion along x at one time: way [m] since time 0, speed [m/s], acceleration [m/s^2]. The state of a use
+ * begins with that at the time of its pass, which bodies read. */
 struct motion {
     double way, speed, acceleration;
 };
+enum { NOW_WAY, NOW_SPEED, NOW_ACCELERATION };
 
 /* Parameters "speed" and "path", which every function of the plugin that needs them declares first. */
 enum { SPEED, PATH, N_MOTION_PARAMS };
@@ -18,19 +20,13 @@ enum { SPEED, PATH, N_MOTION_PARAMS };
         SPH_PARAM_OF_TABLE("path", "columns t [s] and v [m/s]: the speed, straight between rows",  \
                            0)
 
-/* The state of a use is the checked path: NULL where the speed is constant. motion.c */
+/* motion.c: the state, and what sets the motion in it, once a pass. */
 extern const sph_life piston_life;
-struct motion piston_motion(const sph_batch *, double time);
+sph_status piston_prepare(const sph_batch *);
 
 extern const sph_function piston_start; /* move.c */
 extern const sph_function piston_still; /* move.c */
 extern const sph_function piston_place; /* move.c */
 extern const sph_function piston_state; /* state.c */
-
-/* Component c of a column of doubles. */
-static inline double *piston_plane(const sph_column *column, uint32_t c)
-{
-    return (double *)column->data + (size_t)c * column->plane;
-}
 
 #endif

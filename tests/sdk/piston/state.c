@@ -32,31 +32,21 @@ static const sph_prop props[] = {
 #define SPH_LOOP_MIN(S) S(h_near, H_NEAR)
 #define SPH_LOOP_REACH SPH_SYMMETRIC
 #define SPH_LOOP_BODY "state.body.h"
+#define SPH_LOOP_DEVICE state_sweep
 #include <sph/pair-loop.h>
 
-/* Particles that no gas reaches keep what they had. The mass follows the density, so that what the gas
- * sums up over the wall is gas of its own density; the volume stays. */
-static sph_status finish(const sph_batch *b)
-{
-    const struct motion now = piston_motion(b, b->time);
-    const double *weight = b->dst[WEIGHT].data, *volume = b->dst[VOLUME].data;
-    double *rho = b->dst[RHO].data, *p = b->dst[P].data, *cs = b->dst[CS].data;
-    double *m = b->dst[M].data;
-
-    for (uint64_t i = b->first; i < b->first + b->count; i++) {
-        if (weight[i] > 0) {
-            const double per = 1 / weight[i];
-            const double lever = piston_plane(&b->dst[SUM_LEVER], 0)[i];
-            m[i] = volume[i] * per * ((const double *)b->dst[SUM_RHO].data)[i];
-            /* An accelerated wall stands in its own weight: -a . sum W rho (x_wall - x_gas). */
-            const double mean = per * ((const double *)b->dst[SUM_P].data)[i];
-            p[i] = fmax(mean - per * now.acceleration * lever, 0.1 * mean); /* it does not pull */
-            cs[i] = per * ((const double *)b->dst[SUM_CS].data)[i];
-        }
-        rho[i] = m[i] / volume[i]; /* not the scheme's sum, which lacks what is behind the wall */
-    }
-    return SPH_OK;
-}
+#define SPH_POINT_LOOP finish
+#define SPH_POINT_IN(P_)                                                                           \
+    P_(scalar, weight, WEIGHT)                                                                     \
+    P_(scalar, sum_rho, SUM_RHO)                                                                   \
+    P_(scalar, sum_p, SUM_P)                                                                       \
+    P_(scalar, sum_cs, SUM_CS) P_(vector, lever, SUM_LEVER) P_(scalar, volume, VOLUME)
+#define SPH_POINT_INOUT(P_)                                                                        \
+    P_(scalar, rho, RHO) P_(scalar, p, P) P_(scalar, cs, CS) P_(scalar, m, M)
+#define SPH_POINT_STATE(P_) P_(acceleration, NOW_ACCELERATION)
+#define SPH_POINT_BODY "finish.body.h"
+#define SPH_POINT_DEVICE state_finish
+#include <sph/point-loop.h>
 
 static const sph_reduction reductions[] = {
     SPH_REDUCTION("h_near", "h_near", SPH_REDUCE_MIN, SPH_USE_NONE),
@@ -81,4 +71,7 @@ const sph_function piston_state = {
     .reach = SPH_SYMMETRIC,
     .reach_scale = 1,
     .reductions = SPH_LIST(reductions),
+    .device = &state_sweep,
+    .prepare = piston_prepare,
+    .device_after = &state_finish,
 };

@@ -4,6 +4,6 @@ set -eu
 cd "$(dirname "$0")"
 ask() { pkg-config "$@" sph-plugin; }
 # shellcheck disable=SC2046 # words are meant
-${CC:-cc} $(ask --cflags) $(ask --variable=plugin_cflags) -g $(ask --variable=plugin_ldflags) \
+${CC:-cc} -I. $(ask --cflags) $(ask --variable=plugin_cflags) -g $(ask --variable=plugin_ldflags) \
     -o stiffened-gas.so stiffened-gas.c $(ask --variable=plugin_libs)
 chmod go-w stiffened-gas.so

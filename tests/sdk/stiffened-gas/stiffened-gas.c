@@ -25,35 +25,20 @@ static const sph_prop inverse_props[] = {
     SPH_PROP("u", "J/kg", "specific internal energy", SPH_SCALAR, SPH_DST_WRITE, 0),
 };
 
-static sph_status refuse(const sph_batch *b)
-{
-    return b->host->fail(b->host, SPH_E_UNKNOWN, "stiffened-gas works in double precision");
-}
-
-static sph_status run(const sph_batch *b)
-{
-    const double gamma = b->param[GAMMA], p_inf = b->param[P_INF];
-
-    if (b->real != SPH_F64)
-        return refuse(b);
-    const double *rho = b->dst[RHO].data, *u = b->dst[U].data;
-    double *p = b->dst[P].data, *cs = b->dst[CS].data;
-    for (uint64_t i = b->first; i < b->first + b->count; i++) {
-        p[i] = (gamma - 1) * rho[i] * u[i] - gamma * p_inf;
-        /* Torn further apart than the model holds, the liquid carries no sound. */
-        cs[i] = sqrt(gamma * fmax(p[i] + p_inf, 0) / rho[i]);
-    }
-    return SPH_OK;
-}
+#define SPH_POINT_LOOP run
+#define SPH_POINT_IN(X) X(scalar, rho, RHO) X(scalar, u, U)
+#define SPH_POINT_OUT(X) X(scalar, p, P) X(scalar, cs, CS)
+#define SPH_POINT_PARAM(X) X(gamma, GAMMA) X(p_inf, P_INF)
+#define SPH_POINT_BODY "stiffened-gas.body.h"
+#define SPH_POINT_DEVICE stiffened_gas_device
+#include <sph/point-loop.h>
 
 static sph_status inverse(const sph_batch *b)
 {
     const double gamma = b->param[GAMMA], p_inf = b->param[P_INF];
-
-    if (b->real != SPH_F64)
-        return refuse(b);
     const double *rho = b->dst[INVERSE_RHO].data, *p = b->dst[INVERSE_P].data;
     double *u = b->dst[INVERSE_U].data;
+
     for (uint64_t i = b->first; i < b->first + b->count; i++)
         u[i] = (p[i] + gamma * p_inf) / ((gamma - 1) * rho[i]);
     return SPH_OK;
@@ -76,6 +61,7 @@ static const sph_eos eos = {
     .run = run,
     .inverse = inverse,
     .inverse_props = SPH_LIST(inverse_props),
+    .device = &stiffened_gas_device,
 };
 
 static sph_status init(const sph_host *host)

@@ -1,0 +1,1 @@
+/* drift.body.h -- nothing: the rate is all. */

@@ -284,8 +284,7 @@ static void test_out_of_memory(void **state)
     (void)state;
     assert_int_equal(device_reserve(d, &a, 1000001, "neighbour lists", &e), -1);
     assert_int_equal(e.exit_code, EXIT_RUN);
-    SAYS(
-        "has no room for neighbour lists: 1000064 bytes, where one buffer has at most 1000000");
+    SAYS("has no room for neighbour lists: 1000064 bytes, where one buffer has at most 1000000");
     assert_int_equal(device_reserve(d, &a, 600000, "particles", &e), 0);
     assert_int_equal(device_reserve(d, &b, 600000, "neighbour lists", &e), -1);
     SAYS("no room for neighbour lists: 600064 bytes beside the 600064 in use, of 1000000");

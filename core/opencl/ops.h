@@ -61,6 +61,8 @@ int ops_wrong_begin(struct ops *o, const struct arena *a, int column, double lea
 
 /* -- Sides -------- */
 
+/* Builds what the rest of these need, where the box has sides: else they do it when first called. */
+int ops_need_sides(struct ops *o, const struct box *box, struct error *e);
 /* sides_wrap. *moved: how many; NULL: nobody asks, and nothing waits. */
 int ops_wrap(struct ops *o, struct arena *a, const struct box *box, size_t *moved, struct error *e);
 /* A ghost's parent and image, as in struct ghosts. Begin with zeros. */

@@ -136,6 +136,15 @@ static int put_table(struct ops *o, struct arena *a, struct wrapping *w, struct 
     return 0;
 }
 
+int ops_need_sides(struct ops *o, const struct box *box, struct error *e)
+{
+    const struct sides s = sides_of(o, box);
+    uint32_t any = 0;
+    for (int c = 0; c < o->dim; c++)
+        any |= s.low[c] | s.high[c];
+    return any ? ops_build(o, K_WRAP, e) : 0;
+}
+
 int ops_wrap(struct ops *o, struct arena *a, const struct box *box, size_t *moved, struct error *e)
 {
     const struct sides s = sides_of(o, box);

@@ -63,7 +63,7 @@ int run_device_open(struct run *r, struct error *e)
         return error_memory(e, "the run on a device", sizeof(*d));
     if (device_open_part(&d->d, plan->scene->device.number, (unsigned)r->threads, e) ||
         make_tables(r, e) || make_stages(r, e) || ops_open(&d->ops, d->d, plan->dim, e) ||
-        look_open(&d->look, d->d, plan->dim, e) ||
+        ops_need_sides(d->ops, &plan->scene->box, e) || look_open(&d->look, d->d, plan->dim, e) ||
         device_search_open(&d->search, d->d, plan->dim, plan->manager, e))
         return -1;
     for (size_t a = 0; a < plan->n_array; a++)

@@ -3,25 +3,21 @@
 
 #include "opencl/look.h"
 
+#include "opencl/embed.h"
+
 #include <float.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define BLOCK 4096u /* particles; as run/totals.c */
-#define SUMS 10u    /* as look.cl */
+/* Particles that a work item takes: as run/totals.c; a GPU wants more work items. */
+#define BLOCK 4096u
+#define BLOCK_OF_MANY 256u
+#define SUMS 10u /* as look.cl */
 
-__asm__(".pushsection .rodata\n"
-        ".globl look_text\n"
-        ".hidden look_text\n"
-        ".type look_text, %object\n"
-        "look_text:\n"
-        ".incbin \"opencl/look.cl\"\n"
-        ".byte 0\n"
-        ".size look_text, . - look_text\n"
-        ".popsection\n");
-extern __attribute__((visibility("hidden"))) const char look_text[];
+EMBED("look_text", "opencl/look.cl");
+extern EMBEDDED look_text[];
 
 /* As in look.cl. */
 struct entry {
@@ -35,6 +31,7 @@ struct look {
     struct device_program *program;
     struct device_kernel *columns, *totals, *groups;
     struct device_buffer entries, wrong, part;
+    uint32_t block;
     bool asked; /* something was looked at since `wrong` was read */
 };
 
@@ -46,6 +43,7 @@ int look_open(struct look **out, struct device *d, int dim, struct error *e)
     if (!l)
         return error_memory(e, "the look at a device", sizeof(*l));
     l->d = d;
+    l->block = device_facts(d)->cpu ? BLOCK : BLOCK_OF_MANY;
     snprintf(options, sizeof(options), "-DDIM=%d", dim);
     if (device_build(d, &l->program, look_text, options, "the look at columns", e) ||
         device_kernel(d, l->program, "look_columns", "look", &l->columns, e) ||
@@ -102,8 +100,8 @@ static size_t fill_entries(struct entry *entry, const struct arena *a, const str
 int look_at_columns(struct look *l, const struct arena *a, const struct look_column *c, size_t n,
                     struct error *e)
 {
-    const uint32_t particles = (uint32_t)a->n, block = BLOCK,
-                   blocks = (particles + BLOCK - 1) / BLOCK;
+    const uint32_t particles = (uint32_t)a->n, block = l->block,
+                   blocks = (particles + block - 1) / block;
     size_t most = 0;
     struct entry *entry;
     uint32_t n_entry;
@@ -149,8 +147,8 @@ int look_wrong(struct look *l, bool *wrong, struct error *e)
 
 int look_groups(struct look *l, const struct arena *a, int column, uint64_t *n, struct error *e)
 {
-    const uint32_t particles = (uint32_t)a->n, block = BLOCK,
-                   blocks = (particles + BLOCK - 1) / BLOCK;
+    const uint32_t particles = (uint32_t)a->n, block = l->block,
+                   blocks = (particles + block - 1) / block;
     const uint64_t from = at(a, column);
     const size_t bytes = blocks * sizeof(uint32_t);
     uint32_t *part;
@@ -192,7 +190,7 @@ static void add(struct look_totals *t, const double *part)
 int look_totals(struct look *l, const struct arena *a, int mass, int position, int velocity,
                 struct look_totals *t, struct error *e)
 {
-    const uint32_t n = (uint32_t)a->n, block = BLOCK, blocks = (n + BLOCK - 1) / BLOCK;
+    const uint32_t n = (uint32_t)a->n, block = l->block, blocks = (n + block - 1) / block;
     const uint32_t m_size = size_of(a, mass), v_size = size_of(a, velocity);
     const uint64_t m_at = at(a, mass), x_at = at(a, position), v_at = at(a, velocity),
                    plane = a->plane;

@@ -26,7 +26,8 @@ int look_wrong(struct look *l, bool *wrong, struct error *e);
 /* Of an int32 column: how many groups of SPH_LANES particles have one that is not 0. Waits. */
 int look_groups(struct look *l, const struct arena *a, int column, uint64_t *n, struct error *e);
 
-/* Sums over the real particles of one array, block by block as run/totals.c has them. velocity: a column, or -1. */
+/* Sums over the real particles of one array, block by block (where the device is a processor as run/totals.c has
+ * them). velocity: a column, or -1. */
 struct look_totals {
     double mass, kinetic, momentum_scale, angular_scale;
     double momentum[3], angular[3];

@@ -3,12 +3,11 @@
 #ifndef OPENCL_MATH_TEXT_H
 #define OPENCL_MATH_TEXT_H
 
-#define EMBEDDED extern __attribute__((visibility("hidden"))) const char
+#include "opencl/embed.h"
 
 /* Each ends with NUL. */
-EMBEDDED math_text[];
-EMBEDDED words_text[];     /* opencl/words.cl */
-EMBEDDED words_end_text[]; /* opencl/words_end.cl */
+extern EMBEDDED math_text[];
+extern EMBEDDED words_text[];     /* opencl/words.cl */
+extern EMBEDDED words_end_text[]; /* opencl/words_end.cl */
 
-#undef EMBEDDED
 #endif

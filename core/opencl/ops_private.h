@@ -2,10 +2,12 @@
 #ifndef OPENCL_OPS_PRIVATE_H
 #define OPENCL_OPS_PRIVATE_H
 
+#include "opencl/embed.h"
+
 #include "opencl/ops.h"
 
 /* Texts of the files of that name; in ops_text.c. */
-#define OPS_TEXT(name) extern __attribute__((visibility("hidden"))) const char name##_text[];
+#define OPS_TEXT(name) extern EMBEDDED name##_text[];
 OPS_TEXT(ops_words)
 OPS_TEXT(ops_lanes)
 OPS_TEXT(ops_columns)

@@ -1,20 +1,11 @@
-/* opencl/ops_text.c -- embeds the kernels of ops*.cl by the assembler, as math_text.c does a header. */
+/* opencl/ops_text.c -- embeds the kernels of ops*.cl (see embed.h). */
 #include "config.h"
 
+#include "opencl/embed.h"
 #include "opencl/ops_private.h"
 
-#define EMBED(name)                                                                                \
-    __asm__(".pushsection .rodata\n"                                                               \
-            ".globl " #name "_text\n"                                                              \
-            ".hidden " #name "_text\n"                                                             \
-            ".type " #name "_text, %object\n" #name "_text:\n"                                     \
-            ".incbin \"opencl/" #name ".cl\"\n"                                                    \
-            ".byte 0\n"                                                                            \
-            ".size " #name "_text, . - " #name "_text\n"                                           \
-            ".popsection\n")
-
-EMBED(ops_words);
-EMBED(ops_lanes);
-EMBED(ops_columns);
-EMBED(ops_reduce);
-EMBED(ops_sides);
+EMBED("ops_words_text", "opencl/ops_words.cl");
+EMBED("ops_lanes_text", "opencl/ops_lanes.cl");
+EMBED("ops_columns_text", "opencl/ops_columns.cl");
+EMBED("ops_reduce_text", "opencl/ops_reduce.cl");
+EMBED("ops_sides_text", "opencl/ops_sides.cl");

@@ -3,7 +3,9 @@
 #ifndef OPENCL_SEARCH_TEXT_H
 #define OPENCL_SEARCH_TEXT_H
 
-#define TEXT extern __attribute__((visibility("hidden"))) const char /* each ends with NUL */
+#include "opencl/embed.h"
+
+#define TEXT extern EMBEDDED /* each ends with NUL */
 
 TEXT sort_text[];
 TEXT points_text[];

@@ -121,10 +121,9 @@ struct device_memory plan_device_memory(const struct plan *plan)
 void plan_print_device_memory(const struct plan *plan, FILE *out)
 {
     const struct device_memory m = plan_device_memory(plan);
-    fprintf(
-        out,
-        "device memory: about %.3g MB: columns %.3g, neighbour lists %.3g, search %.3g; the largest "
-        "buffer %.3g (%s)\n",
-        1e-6 * m.total, 1e-6 * m.columns, 1e-6 * m.lists, 1e-6 * m.search, 1e-6 * m.largest,
-        m.largest_of ? m.largest_of : "none");
+    fprintf(out,
+            "device memory: about %.3g MB: columns %.3g, neighbour lists %.3g, search %.3g\n"
+            "               the largest buffer %.3g (%s)\n",
+            1e-6 * m.total, 1e-6 * m.columns, 1e-6 * m.lists, 1e-6 * m.search, 1e-6 * m.largest,
+            m.largest_of ? m.largest_of : "none");
 }

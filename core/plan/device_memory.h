@@ -19,7 +19,7 @@ struct device_memory {
 size_t plan_ghosts(const struct plan *plan, size_t array);
 /* Of particles that are evenly spread, of a plan whose particles are made or not yet. */
 struct device_memory plan_device_memory(const struct plan *plan);
-/* "device memory: ...", a line. */
+/* "device memory: ...", two lines. */
 void plan_print_device_memory(const struct plan *plan, FILE *out);
 
 #endif

@@ -436,17 +436,6 @@ static int find_wrong(struct run *r, enum moment moment, struct error *e)
     return moment == MOMENT_EVALUATE ? finite_rates(r, e) : 0;
 }
 
-static void bound_dt(struct run *r)
-{
-    r->dt_bound = INFINITY;
-    for (size_t i = 0; i < r->plan->n_reduction; i++) {
-        const struct reduction *d = &r->plan->reduction[i];
-        if (d->declared->use == SPH_USE_TIME_STEP && !isnan(r->dt_bound) &&
-            !(r->reduced[i] >= r->dt_bound))
-            r->dt_bound = r->reduced[i];
-    }
-}
-
 static int failed_bodies(struct run *r, struct error *e)
 {
     bool failed = false;
@@ -472,7 +461,7 @@ int run_device_passes(struct run *r, enum moment moment, struct error *e)
         return -1;
     if (moment != MOMENT_EVALUATE)
         return 0;
-    bound_dt(r);
+    run_bound_dt(r);
     r->watch->sorted = false;
     r->watch->evaluated = true;
     return 0;

@@ -3,44 +3,11 @@
  * says it in the words that it has for its own runs. */
 #include "run/device.h"
 
+#include "run/frames.h"
 #include "run/watch.h"
 
 #include <math.h>
 #include <string.h>
-
-/* As on the host: lists are made so often between two sorts. */
-#define BUILDS_PER_SORT 16
-
-static double support(const struct run *r)
-{
-    return r->plan->kernel.support * r->plan->reach_scale;
-}
-
-static int place_in(const struct run *r, size_t frame, size_t array)
-{
-    const struct plan_array *a = &r->plan->array[array];
-    const struct frame *f = &r->plan->frame[frame];
-
-    return frame == 0 ? a->position : particles_find(&a->p, f->frozen ? f->kept : f->name);
-}
-
-static int reach_in(const struct run *r, size_t frame, size_t array)
-{
-    const struct plan_array *a = &r->plan->array[array];
-    const struct frame *f = &r->plan->frame[frame];
-
-    return f->frozen ? particles_find(&a->p, f->kept_h) : a->smoothing;
-}
-
-static bool in_frame(const struct run *r, size_t frame, size_t array)
-{
-    for (size_t k = 0; k < r->plan->n_list; k++) {
-        const struct plan_list *l = &r->plan->list[k];
-        if (l->frame == frame && (l->dst == array || l->src == array))
-            return true;
-    }
-    return false;
-}
 
 static struct device_cloud cloud_of(const struct run *r, size_t array, size_t frame, bool ghosts)
 {
@@ -50,17 +17,17 @@ static struct device_cloud cloud_of(const struct run *r, size_t array, size_t fr
                                  .wide = &a->wide,
                                  .plane = a->plane,
                                  .n = a->n + (ghosts ? a->n_ghost : 0),
-                                 .x_slot = a->place[place_in(r, frame, array)].slot,
-                                 .h_slot = a->place[reach_in(r, frame, array)].slot,
-                                 .scale = support(r)};
+                                 .x_slot = a->place[frame_place(r, frame, array)].slot,
+                                 .h_slot = a->place[frame_reach(r, frame, array)].slot,
+                                 .scale = frame_support(r->plan)};
 }
 
 /* Places and h of all arrays are on the device. */
 static int places_here(struct run *r, size_t frame, struct error *e)
 {
     for (size_t a = 0; a < r->plan->n_array; a++)
-        if (arena_put(&r->device->arena[a], place_in(r, frame, a), e) ||
-            arena_put(&r->device->arena[a], reach_in(r, frame, a), e))
+        if (arena_put(&r->device->arena[a], frame_place(r, frame, a), e) ||
+            arena_put(&r->device->arena[a], frame_reach(r, frame, a), e))
             return -1;
     return 0;
 }
@@ -177,13 +144,13 @@ static int holds(struct run *r, size_t frame, bool *answer, struct error *e)
 
     *answer = false;
     for (size_t a = 0; a < r->plan->n_array; a++) {
-        if (!in_frame(r, frame, a) || r->device->arena[a].n == 0)
+        if (!frame_has(r, frame, a) || r->device->arena[a].n == 0)
             continue;
         if (n == most) /* more arrays than results: lists are made anew */
             return 0;
         if (ops_skin_begin(r->device->ops, &r->device->skin[frame * r->plan->n_array + a],
-                           &r->device->arena[a], place_in(r, frame, a), reach_in(r, frame, a),
-                           support(r), r->skin, first + 2 * n++, e))
+                           &r->device->arena[a], frame_place(r, frame, a), frame_reach(r, frame, a),
+                           frame_support(r->plan), r->skin, first + 2 * n++, e))
             return -1;
     }
     if (n && take_results(r, change, 2 * n, e))
@@ -197,9 +164,10 @@ static int holds(struct run *r, size_t frame, bool *answer, struct error *e)
 static int keep_places(struct run *r, size_t frame, struct error *e)
 {
     for (size_t a = 0; !r->plan->frame[frame].frozen && a < r->plan->n_array; a++)
-        if (in_frame(r, frame, a) &&
+        if (frame_has(r, frame, a) &&
             ops_skin_keep(r->device->ops, &r->device->skin[frame * r->plan->n_array + a],
-                          &r->device->arena[a], place_in(r, frame, a), reach_in(r, frame, a), e))
+                          &r->device->arena[a], frame_place(r, frame, a), frame_reach(r, frame, a),
+                          e))
             return -1;
     return 0;
 }
@@ -307,7 +275,7 @@ static int make_ghosts(struct run *r, struct error *e)
         return -1;
     for (size_t a = 0; a < r->plan->n_array; a++)
         margin = fmax(margin, r->h_high[a]);
-    margin = margin * support(r) * (1.0 + r->skin) + overshoot;
+    margin = margin * frame_support(r->plan) * (1.0 + r->skin) + overshoot;
     if (is_wide(r, margin) && (places_there(r, e) || watch_reach(r, margin, e)))
         return -1;
     for (size_t a = 0; a < r->plan->n_array; a++) {
@@ -384,8 +352,8 @@ static int freeze(struct run *r, size_t frame, struct error *e)
         const struct particles *p = &r->plan->array[a].p;
         const int from[2] = {particles_find(p, r->plan->frame[frame].name),
                              r->plan->array[a].smoothing};
-        const int to[2] = {place_in(r, frame, a), reach_in(r, frame, a)};
-        if (!in_frame(r, frame, a))
+        const int to[2] = {frame_place(r, frame, a), frame_reach(r, frame, a)};
+        if (!frame_has(r, frame, a))
             continue;
         for (int k = 0; k < 2; k++) {
             const size_t plane = arena->plane * sizeof(double);

@@ -1,6 +1,7 @@
 /* run/lists.c -- neighbour lists and ghosts of a run: made when they are no longer right, reused until then.
  * Everything is decided by displacements and counters, never by time, so that a run repeats itself. */
 #include "run/device.h"
+#include "run/frames.h"
 #include "run/watch.h"
 
 #include "neighbours/range.h"
@@ -10,44 +11,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Lists are made so often between two sorts of the particles. */
-#define BUILDS_PER_SORT 16
-
-static double support(const struct plan *plan)
-{
-    return plan->kernel.support * plan->reach_scale;
-}
-
 static double *plane_of(const struct plan_array *a, int column, int c)
 {
     const struct column *x = &a->p.column[column];
     return (double *)x->data + (size_t)c * x->plane;
-}
-
-/* The columns in which a frame's neighbours are looked for: places, and h. */
-static int place_in(const struct run *r, size_t frame, size_t array)
-{
-    const struct plan_array *a = &r->plan->array[array];
-    const struct frame *f = &r->plan->frame[frame];
-    return frame == 0 ? a->position : particles_find(&a->p, f->frozen ? f->kept : f->name);
-}
-
-static int reach_in(const struct run *r, size_t frame, size_t array)
-{
-    const struct plan_array *a = &r->plan->array[array];
-    const struct frame *f = &r->plan->frame[frame];
-    return f->frozen ? particles_find(&a->p, f->kept_h) : a->smoothing;
-}
-
-/* Does any list of this frame have this array? */
-static bool in_frame(const struct run *r, size_t frame, size_t array)
-{
-    for (size_t k = 0; k < r->plan->n_list; k++) {
-        const struct plan_list *l = &r->plan->list[k];
-        if (l->frame == frame && (l->dst == array || l->src == array))
-            return true;
-    }
-    return false;
 }
 
 /* -- Are they still right? ---------------------------------------------------------------------- */
@@ -55,12 +22,12 @@ static bool in_frame(const struct run *r, size_t frame, size_t array)
 static struct cloud cloud_of(const struct run *r, size_t array, size_t frame, bool ghosts)
 {
     const struct plan_array *a = &r->plan->array[array];
-    struct cloud cloud = {.dim = r->plan->dim, .scale = support(r->plan)};
+    struct cloud cloud = {.dim = r->plan->dim, .scale = frame_support(r->plan)};
     cloud.n = a->p.n + (ghosts ? a->p.n_ghost : 0);
-    const struct column *h = &a->p.column[reach_in(r, frame, array)];
+    const struct column *h = &a->p.column[frame_reach(r, frame, array)];
     cloud.h = h->size == sizeof(double) ? h->data : r->wide_h[array];
     for (int c = 0; c < r->plan->dim; c++)
-        cloud.x[c] = plane_of(a, place_in(r, frame, array), c);
+        cloud.x[c] = plane_of(a, frame_place(r, frame, array), c);
     return cloud;
 }
 
@@ -125,7 +92,7 @@ static size_t clouds_of(const struct run *r, size_t frame, struct cloud *cloud)
 {
     size_t n = 0;
     for (size_t a = 0; a < r->plan->n_array; a++)
-        if (in_frame(r, frame, a))
+        if (frame_has(r, frame, a))
             cloud[n++] = cloud_of(r, a, frame, false);
     return n;
 }
@@ -136,8 +103,8 @@ struct skin_change run_change(const struct run *r, size_t array, size_t first, s
     struct cloud cloud = cloud_of(r, array, 0, false);
     const struct skin *kept = r->kept;
     for (size_t a = 0; a < array; a++)
-        kept += in_frame(r, 0, a);
-    if (!in_frame(r, 0, array))
+        kept += frame_has(r, 0, a);
+    if (!frame_has(r, 0, array))
         return (struct skin_change){0.0, INFINITY};
     if (kept->n != cloud.n)
         return (struct skin_change){NAN, NAN};
@@ -178,7 +145,7 @@ static bool holds(const struct run *r, size_t frame)
     const struct skin *kept = r->kept + frame * r->plan->n_array;
     struct skin_change all = {0.0, INFINITY};
     for (size_t a = 0; a < r->plan->n_array; a++) {
-        if (!in_frame(r, frame, a))
+        if (!frame_has(r, frame, a))
             continue;
         const struct plan_array *pa = &r->plan->array[a];
         const struct cloud cloud = cloud_of(r, a, frame, false);
@@ -257,7 +224,7 @@ static int make_ghosts(struct run *r, struct error *e)
     double margin = 0.0;
     for (size_t a = 0; a < r->plan->n_array; a++)
         margin = fmax(margin, r->h_high[a]);
-    margin = margin * support(r->plan) * (1.0 + r->skin) + largest_overshoot(r);
+    margin = margin * frame_support(r->plan) * (1.0 + r->skin) + largest_overshoot(r);
     if (watch_reach(r, margin, e))
         return -1;
     for (size_t a = 0; a < r->plan->n_array; a++) {
@@ -329,15 +296,15 @@ static void freeze(struct run *r, size_t frame)
 {
     for (size_t a = 0; a < r->plan->n_array; a++) {
         const struct particles *p = &r->plan->array[a].p;
-        if (!in_frame(r, frame, a))
+        if (!frame_has(r, frame, a))
             continue;
         const struct column *from = &p->column[particles_find(p, r->plan->frame[frame].name)];
-        const struct column *to = &p->column[place_in(r, frame, a)];
+        const struct column *to = &p->column[frame_place(r, frame, a)];
         for (uint32_t c = 0; c < from->ncomp; c++)
             for (size_t i = 0; i < p->n; i++)
                 column_set(to, c, i, column_get(from, c, i));
-        memcpy(p->column[reach_in(r, frame, a)].data, p->column[r->plan->array[a].smoothing].data,
-               p->n * sizeof(double));
+        memcpy(p->column[frame_reach(r, frame, a)].data,
+               p->column[r->plan->array[a].smoothing].data, p->n * sizeof(double));
     }
     r->frozen[frame] = true;
 }

@@ -191,7 +191,7 @@ static void reduce_pass(struct run *r, size_t pass)
     }
 }
 
-static void bound_dt(struct run *r)
+void run_bound_dt(struct run *r)
 {
     r->dt_bound = INFINITY;
     for (size_t i = 0; i < r->plan->n_reduction; i++) {
@@ -220,7 +220,7 @@ int run_passes(struct run *r, enum moment moment, struct error *e)
     }
     if (moment != MOMENT_EVALUATE)
         return 0;
-    bound_dt(r);
+    run_bound_dt(r);
     if (finite_rates(r, e))
         return -1;
     r->watch->sorted = false;

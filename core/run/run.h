@@ -146,6 +146,9 @@ static inline double reduction_merge(uint32_t op, double a, double b)
 /* passes.c. All passes of a moment, in order. */
 int run_passes(struct run *r, enum moment moment, struct error *e);
 
+/* passes.c. dt_bound of what reductions have come to. */
+void run_bound_dt(struct run *r);
+
 /* passes.c. A batch of all particles of an array (use_batch) in this moment of the run. */
 sph_batch run_batch(const struct run *r, const struct use *u, const sph_column *dst,
                     uint32_t n_columns, uint64_t n);

@@ -2,6 +2,7 @@
  * only when something is wrong is the particle looked for. Knows the contract's names of columns, and no
  * more of what they stand for. */
 #include "run/watch.h"
+#include "run/frames.h"
 #include "base/clones.h"
 #include "run/region.h"
 #include <float.h>
@@ -316,15 +317,6 @@ static int look_for_escaped(struct run *r, size_t array, struct error *e)
     return look_where(r, a, e);
 }
 
-/* Whether lists are made anew when this array moves. */
-static bool has_lists(const struct plan *plan, size_t array)
-{
-    for (size_t k = 0; k < plan->n_list; k++)
-        if (plan->list[k].frame == 0 && (plan->list[k].dst == array || plan->list[k].src == array))
-            return true;
-    return false;
-}
-
 int watch_places(struct run *r, bool all, struct error *e)
 {
     const struct scene_watch *rule = &r->watch->scene[WATCH_ESCAPED];
@@ -333,7 +325,7 @@ int watch_places(struct run *r, bool all, struct error *e)
         set_bounds(r);
     r->watch->bounded = true;
     for (size_t a = 0; a < r->plan->n_array; a++)
-        if ((always || all == has_lists(r->plan, a)) && look_for_escaped(r, a, e))
+        if ((always || all == frame_has(r, 0, a)) && look_for_escaped(r, a, e))
             return -1;
     return 0;
 }

@@ -13,25 +13,46 @@
 
 #define WHOLE 16384 /* sums of so few are one work group's */
 
+/* Sorts are a program of their own, built when first asked for: most runs need none. */
 enum { SCAN_WHOLE, SCAN_SUMS, SCAN_PARTS, SCAN_OUT, COUNT4, MOVE4, COUNT8, MOVE8, KERNELS };
 
 struct device_sort {
     struct device *d;
     bool cpu;
     uint32_t units, bits;
-    struct device_program *program;
+    struct device_program *program[2];
     struct device_kernel *kernel[KERNELS];
     struct device_buffer part, count, zero, key, value;
 };
 
-int device_sort_open(struct device_sort **out, struct device *d, bool cpu, struct error *e)
+/* Running sums, or sorts. */
+static int build(struct device_sort *s, int sorts, struct error *e)
 {
     static const char *const name[KERNELS] = {
         "scan_whole",      "scan_sums",      "scan_parts",       "scan_out",
         "sort_count_uint", "sort_move_uint", "sort_count_ulong", "sort_move_ulong"};
+    char options[64];
+
+    if (s->program[sorts]) {
+        return 0;
+    }
+    snprintf(options, sizeof options, "-DWG=%d -DSORT_BITS=%u -DSORTS=%d", s->cpu ? 1 : 64, s->bits,
+             sorts);
+    if (device_build(s->d, &s->program[sorts], sort_text, options, "sorting", e) != 0) {
+        return -1;
+    }
+    for (int k = sorts ? COUNT4 : 0; k < (sorts ? KERNELS : COUNT4); k++) {
+        if (device_kernel(s->d, s->program[sorts], name[k], "sort", &s->kernel[k], e) != 0) {
+            return -1;
+        }
+    }
+    return 0;
+}
+
+int device_sort_open(struct device_sort **out, struct device *d, bool cpu, struct error *e)
+{
     const struct device_facts *f = device_facts(d);
     struct device_sort *s = calloc(1, sizeof *s);
-    char options[64];
 
     *out = s;
     if (!s) {
@@ -41,23 +62,13 @@ int device_sort_open(struct device_sort **out, struct device *d, bool cpu, struc
     s->cpu = cpu;
     s->units = f->units ? f->units : 1;
     s->bits = cpu ? 11 : 4;
-    snprintf(options, sizeof options, "-DWG=%d -DSORT_BITS=%u", cpu ? 1 : 64, s->bits);
-    if (device_build(d, &s->program, sort_text, options, "sorting", e) != 0) {
-        goto failed;
-    }
-    for (int k = 0; k < KERNELS; k++) {
-        if (device_kernel(d, s->program, name[k], "sort", &s->kernel[k], e) != 0) {
-            goto failed;
-        }
-    }
-    if (device_reserve(d, &s->zero, 2 * sizeof(uint64_t), "sorting", e) != 0) {
-        goto failed;
+    if (build(s, 0, e) != 0 ||
+        device_reserve(d, &s->zero, 2 * sizeof(uint64_t), "sorting", e) != 0) {
+        device_sort_close(s);
+        *out = NULL;
+        return -1;
     }
     return 0;
-failed:
-    device_sort_close(s);
-    *out = NULL;
-    return -1;
 }
 
 void device_sort_close(struct device_sort *s)
@@ -70,7 +81,8 @@ void device_sort_close(struct device_sort *s)
     device_release(s->d, &s->zero);
     device_release(s->d, &s->key);
     device_release(s->d, &s->value);
-    device_program_free(s->d, s->program);
+    device_program_free(s->d, s->program[0]);
+    device_program_free(s->d, s->program[1]);
     free(s);
 }
 
@@ -131,6 +143,9 @@ int device_sort_pairs(struct device_sort *s, struct device_buffer *key, struct d
 
     if (n < 2) {
         return 0;
+    }
+    if (build(s, 1, e) != 0) {
+        return -1;
     }
     /* As large as the caller's, which they may become. */
     if (device_reserve(s->d, &s->key, key->bytes, "sorting", e) != 0 ||

@@ -1,12 +1,14 @@
 /* opencl/sort.cl -- sums that run along an array, and a stable sort of keys with their values. A
  * work item takes a stretch of its own; what comes out is the same for any number of them.
  *
- * WG: work items of a group; SORT_BITS: of a digit. */
+ * WG: work items of a group; SORT_BITS: of a digit. SORTS 0: the sums, 1: the sorts. */
 
 #define KERNEL __kernel __attribute__((reqd_work_group_size(WG, 1, 1)))
 #define SORT_BINS (1u << SORT_BITS)
 
 /* -- Running sums -------- */
+
+#if !SORTS
 
 /* What comes before a work item's own sum, of one group; *all: the sum of all. */
 static ulong group_before(ulong mine, __local ulong *room, ulong *all)
@@ -127,6 +129,8 @@ KERNEL void scan_out(__global const uint *in, uint in_at, uint n, uint each,
     }
 }
 
+#else
+
 /* -- A digit -------- */
 
 /* count[digit * stretches + stretch]: how many keys of a stretch have the digit; then, as running
@@ -180,3 +184,5 @@ KERNEL void scan_out(__global const uint *in, uint in_at, uint n, uint each,
 
 SORT(uint)
 SORT(ulong)
+
+#endif

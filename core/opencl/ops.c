@@ -16,7 +16,6 @@ static const struct {
     [K_PERMUTE_NARROW] = {"permute_narrow", "permute"},
     [K_ADVANCE] = {"advance", "integrate"},
     [K_REDUCE] = {"reduce_column", "reduce"},
-    [K_WRONG] = {"count_wrong", "reduce"},
     [K_SKIN_KEEP] = {"skin_keep", "skin"},
     [K_SKIN] = {"skin_change", "skin"},
     [K_PARTS] = {"reduce_parts", "reduce"},

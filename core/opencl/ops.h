@@ -49,15 +49,6 @@ int ops_reduce(struct ops *o, const struct arena *a, int column, uint32_t compon
 /* The same, left as result k. */
 int ops_reduce_begin(struct ops *o, const struct arena *a, int column, uint32_t component, int mass,
                      uint32_t op, size_t k, struct error *e);
-/* Least and largest of a component of real particles; NaN where one is. */
-int ops_range(struct ops *o, const struct arena *a, int column, uint32_t component, double *least,
-              double *most, struct error *e);
-/* How many elements of a real column are not finite, or less than `least` (-INFINITY: not asked); or left as
- * result k. */
-int ops_wrong(struct ops *o, const struct arena *a, int column, double least, uint64_t *n,
-              struct error *e);
-int ops_wrong_begin(struct ops *o, const struct arena *a, int column, double least, size_t k,
-                    struct error *e);
 
 /* -- Sides -------- */
 

@@ -21,7 +21,6 @@ enum ops_kernel {
     K_PERMUTE_NARROW,
     K_ADVANCE,
     K_REDUCE,
-    K_WRONG,
     K_SKIN_KEEP,
     K_SKIN,
     K_PARTS,

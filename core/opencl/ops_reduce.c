@@ -53,46 +53,6 @@ int ops_reduce(struct ops *o, const struct arena *a, int column, uint32_t compon
                : 0;
 }
 
-int ops_range(struct ops *o, const struct arena *a, int column, uint32_t component, double *least,
-              double *most, struct error *e)
-{
-    double both[2];
-    if (ops_reduce_begin(o, a, column, component, -1, SPH_REDUCE_MIN, OPS_RESULTS - 2, e) ||
-        ops_reduce_begin(o, a, column, component, -1, SPH_REDUCE_MAX, OPS_RESULTS - 1, e) ||
-        device_read(o->d, &o->words, sizeof(struct ops_words) + (OPS_RESULTS - 2) * sizeof *both,
-                    both, sizeof both, e))
-        return -1;
-    *least = both[0];
-    *most = both[1];
-    return 0;
-}
-
-int ops_wrong_begin(struct ops *o, const struct arena *a, int column, double least, size_t k,
-                    struct error *e)
-{
-    const uint64_t plane = a->plane, n = a->n, groups = groups_for(n);
-    const uint32_t slot = ops_slot(a, column), ncomp = a->p->column[column].ncomp;
-    if (reserve(o, groups, e) ||
-        OPS_LAUNCH(o, K_WRONG, groups * GROUP, e, DEVICE_BUFFER(&a->wide),
-                   DEVICE_BUFFER(&a->narrow), DEVICE_VALUE(plane), DEVICE_VALUE(slot),
-                   DEVICE_VALUE(ncomp), DEVICE_VALUE(n), DEVICE_VALUE(least),
-                   DEVICE_BUFFER(&o->part)))
-        return -1;
-    return gather(o, 0, groups, SPH_REDUCE_SUM, false, 1.0, k, e);
-}
-
-int ops_wrong(struct ops *o, const struct arena *a, int column, double least, uint64_t *n,
-              struct error *e)
-{
-    double count;
-    if (ops_wrong_begin(o, a, column, least, OPS_RESULTS - 1, e) ||
-        device_read(o->d, &o->words, sizeof(struct ops_words) + (OPS_RESULTS - 1) * sizeof count,
-                    &count, sizeof count, e))
-        return -1;
-    *n = (uint64_t)count;
-    return 0;
-}
-
 /* -- Lists: are they still right? -------- */
 
 /* Elements from one component of what is kept to the next; as many behind the last are read as a column has. */

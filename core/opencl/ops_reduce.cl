@@ -84,27 +84,6 @@ reduce_column(global const double *wide, global const float *narrow, ulong plane
         part[get_group_id(0)] = group;
 }
 
-/* How many are not finite, or less than `least`; over all components. */
-kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void
-count_wrong(global const double *wide, global const float *narrow, ulong plane, uint slot,
-            uint ncomp, ulong n, double least, global double *part)
-{
-    local double share[GROUP];
-    double8 all = 0.0;
-    for (uint c = 0; c < ncomp; c++)
-        for (uint k = 0; k < TURNS; k++) {
-            const ulong i = turn_of(k);
-            if (i >= n)
-                break;
-            const double8 value = get_8(wide, narrow, slot, c, plane, i);
-            const long8 wrong = ~(isfinite(value) & (value >= (double8)least));
-            all += select((double8)0.0, (double8)1.0, wrong & inside(i, n));
-        }
-    const double group = group_merge(SUM, across(SUM, all, (long8)0), share);
-    if (get_local_id(0) == 0)
-        part[get_group_id(0)] = group;
-}
-
 /* The squares of how far particles have moved, and what is left of their reach; NaN where a number is none. */
 kernel __attribute__((reqd_work_group_size(GROUP, 1, 1))) void
 skin_change(global const double *wide, global const float *narrow, ulong plane, uint position,

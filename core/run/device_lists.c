@@ -356,11 +356,7 @@ static int freeze(struct run *r, size_t frame, struct error *e)
         if (!frame_has(r, frame, a))
             continue;
         for (int k = 0; k < 2; k++) {
-            const size_t plane = arena->plane * sizeof(double);
-            if (arena_put(arena, from[k], e) ||
-                device_copy(r->device->d, &arena->wide, arena->place[to[k]].slot * plane,
-                            &arena->wide, arena->place[from[k]].slot * plane,
-                            p->column[from[k]].ncomp * plane, e))
+            if (ops_copy(r->device->ops, arena, from[k], to[k], e))
                 return -1;
             run_device_changed(r, a, to[k]);
         }

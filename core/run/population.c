@@ -117,15 +117,40 @@ static bool is_wanted(const struct pass *p)
     return p->moment == MOMENT_FINISH && p->use.entry && p->use.entry->population;
 }
 
+/* Of a run on a device the host does this as well. A particle is made or removed now and then: until then
+ * what functions wrote is all that it needs. */
+static int find_wanted(struct run *r, bool *any, struct error *e)
+{
+    *any = false;
+    for (size_t i = 0; i < r->plan->n_pass; i++) {
+        const struct pass *p = &r->plan->pass[i];
+        const size_t array = p->dst.array;
+        const struct particles *particles = &r->plan->array[array].p;
+        if (!is_wanted(p))
+            continue;
+        const char *const name[2] = {p->use.entry->population->remove,
+                                     p->use.entry->population->create};
+        for (int k = 0; k < 2; k++) {
+            if (!name[k])
+                continue;
+            if (r->device && run_device_get(r, array, particles_find(particles, name[k]), e))
+                return -1;
+            const int32_t *flag = column_of(particles, name[k]);
+            for (size_t q = 0; !*any && q < particles->n; q++)
+                *any = flag[q] != 0;
+        }
+    }
+    return 0;
+}
+
 int run_population(struct run *r, struct error *e)
 {
     const bool made = r->lists_made;
-    bool any = false;
-    for (size_t i = 0; i < r->plan->n_pass; i++)
-        any = any || is_wanted(&r->plan->pass[i]);
+    bool any;
+    if (find_wanted(r, &any, e))
+        return -1;
     if (!any)
         return 0;
-    /* Of a run on a device the host does this as well: a particle is made or removed now and then. */
     if (r->device && run_fetch(r, e))
         return -1;
     r->lists_made = true;

@@ -104,7 +104,7 @@ if part("refused"):
     for n in (1, 2, 8, 12):
         refused(f"buffer {n}", 1, DEVICE + r"gives no room for [a-z].*: CL_MEM_OBJECT_ALLOCATION_FAILURE \(-4\)",
                 faults=[f"clCreateBuffer:{n}:-4"])
-    for n in (1, 9, 17, 18, 25, 40):
+    for n in (1, 9, 17, 18, 25, 30):
         refused(f"kernel {n}", 1, DEVICE + r"has no kernel \w+: CL_OUT_OF_RESOURCES \(-5\)",
                 faults=[f"clCreateKernel:{n}:-5"])
     for option in (("--path", "reference"), ("--path", "avx2")):

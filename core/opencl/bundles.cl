@@ -7,6 +7,7 @@
  * A work item takes BUNDLE_RUN groups; which of them are a bundle does not depend on how many
  * work items there are. */
 
+#if CPU
 #define BUNDLE_RUN 48u
 #define BUNDLE_MOST 12u   /* groups */
 #define BUNDLE_SPREAD 2.0 /* half the diagonal of its box, in units of its smallest reach */
@@ -458,3 +459,4 @@ KERNEL void bundles_put(struct stretch t, __global const uint *counts,
         }
     }
 }
+#endif

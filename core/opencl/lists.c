@@ -53,22 +53,36 @@ static const struct device_buffer *order_of(const struct job *j)
         DEVICE_BUFFER(rows_of(s)), DEVICE_BUFFER(&s->box), DEVICE_BUFFER(order_of(j)),             \
         DEVICE_VALUE(j->mapped), DEVICE_VALUE(*t)
 
+/* Groups one by one, counted or, by those counts, written. */
+static int groups(const struct job *j, const struct stretch *t, bool fill, uint32_t slot,
+                  struct error *e)
+{
+    struct device_search *s = j->s;
+    struct device_list *list = j->list;
+    const uint64_t room = list->step.bytes / sizeof(uint32_t);
+    const uint32_t fill4 = fill, all = !s->cpu;
+
+    return SEARCH_LAUNCH(s, K_LIST, search_items(t->n, s->cpu ? MANY : 1), COMMON_ARGS,
+                         DEVICE_VALUE(fill4), DEVICE_VALUE(all), DEVICE_BUFFER(&s->counts),
+                         DEVICE_BUFFER(&list->begin), DEVICE_BUFFER(&list->common),
+                         DEVICE_BUFFER(&list->step), DEVICE_BUFFER(&s->total), DEVICE_VALUE(slot),
+                         DEVICE_VALUE(room));
+}
+
 /* Makes the lists of a stretch of groups, the slot-th. */
 static int slab(const struct job *j, const struct stretch *t, uint32_t slot, struct error *e)
 {
     struct device_search *s = j->s;
     struct device_list *list = j->list;
     const uint64_t room = list->step.bytes / sizeof(uint32_t);
-    const size_t items = search_items(t->n, s->cpu ? MANY : 1), runs = search_items(t->n, RUN);
-    const uint32_t all = !s->cpu;
+    const size_t runs = search_items(t->n, RUN);
 
     if (s->cpu && SEARCH_LAUNCH(s, K_LOOK, runs, COMMON_ARGS, DEVICE_BUFFER(&s->counts),
                                 DEVICE_BUFFER(&s->slot), DEVICE_VALUE(s->room),
                                 DEVICE_BUFFER(&s->need), DEVICE_BUFFER(&s->tables)) != 0) {
         return -1;
     }
-    if (SEARCH_LAUNCH(s, K_COUNT, items, COMMON_ARGS, DEVICE_VALUE(all),
-                      DEVICE_BUFFER(&s->counts)) != 0 ||
+    if (groups(j, t, false, slot, e) != 0 ||
         device_scan(s->sort, &s->counts, 0, t->n, &list->begin, t->from, &s->total, slot, e) != 0) {
         return -1;
     }
@@ -79,10 +93,7 @@ static int slab(const struct job *j, const struct stretch *t, uint32_t slot, str
                       DEVICE_VALUE(room), DEVICE_BUFFER(&s->need)) != 0) {
         return -1;
     }
-    return SEARCH_LAUNCH(s, K_FILL, items, COMMON_ARGS, DEVICE_BUFFER(&s->counts),
-                         DEVICE_BUFFER(&list->begin), DEVICE_BUFFER(&list->common),
-                         DEVICE_BUFFER(&list->step), DEVICE_BUFFER(&s->total), DEVICE_VALUE(slot),
-                         DEVICE_VALUE(room));
+    return groups(j, t, true, slot, e);
 }
 
 /* All slabs; *entries: of the list; *need: places that a side of a slot must have. */

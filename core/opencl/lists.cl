@@ -114,32 +114,6 @@ INLINE struct found group_do(const struct asked *q, const struct index *s, INDEX
     return f;
 }
 
-KERNEL void list_count(__global const double *dst_wide, struct points dst, double factor,
-                       __global const double *wide, struct points src, struct index s, INDEX,
-                       __global const uint *order, uint mapped, struct stretch t, uint all,
-                       __global uint *counts)
-{
-    const ulong begin = get_global_id(0) * MANY, end = min(begin + MANY, (ulong)t.n);
-
-    for (ulong k = begin; k < end; k++) {
-        const uint group = t.from + (uint)k;
-        __global uint *c = counts + k;
-
-        if (all || c[HERE * t.stride]) {
-            struct asked q;
-            struct found f;
-
-            ask(&q, dst_wide, dst, factor, group * 8, min(group * 8 + 8, dst.n));
-            f = group_do(&q, &s, FOUND_IN, wide, src, order, mapped, group, 0, 0);
-            c[ALL * t.stride] = f.n[BOTH] + f.n[LOWER] + f.n[UPPER];
-            c[BOTH * t.stride] = f.n[BOTH];
-            c[LOWER * t.stride] = f.n[LOWER];
-            c[UPPER * t.stride] = f.n[UPPER];
-            c[HERE * t.stride] = 1;
-        }
-    }
-}
-
 INLINE struct found counted(__global const uint *c, uint stride)
 {
     struct found f = {{0, c[BOTH * stride], c[LOWER * stride], c[UPPER * stride]}};
@@ -147,11 +121,12 @@ INLINE struct found counted(__global const uint *c, uint stride)
     return f;
 }
 
-/* Says where turns begin; writes nothing of a list that has no room for what comes up to here. */
-KERNEL void list_fill(__global const double *dst_wide, struct points dst, double factor,
+/* Counts the groups that are done here, or all; or else, `fill`, writes their sources by those counts, and says
+ * where turns begin: nothing of a list that has no room for what comes up to here. */
+KERNEL void list_make(__global const double *dst_wide, struct points dst, double factor,
                       __global const double *wide, struct points src, struct index s, INDEX,
-                      __global const uint *order, uint mapped, struct stretch t,
-                      __global const uint *counts, __global const uint *first,
+                      __global const uint *order, uint mapped, struct stretch t, uint fill,
+                      uint all, __global uint *counts, __global const uint *first,
                       __global uint *common, __global uint *step, __global const ulong *total,
                       uint slot, ulong room)
 {
@@ -159,14 +134,27 @@ KERNEL void list_fill(__global const double *dst_wide, struct points dst, double
 
     for (ulong k = begin; k < end; k++) {
         const uint group = t.from + (uint)k;
-        const struct found f = counted(counts + k, t.stride);
+        __global uint *c = counts + k;
+        const struct found known = counted(c, t.stride);
+        struct asked q;
+        struct found f;
 
-        common[group] = f.n[BOTH] + max(f.n[LOWER], f.n[UPPER]) - min(f.n[LOWER], f.n[UPPER]);
-        if (counts[k + HERE * t.stride] && total[slot + 1] <= room) {
-            struct asked q;
-
-            ask(&q, dst_wide, dst, factor, group * 8, min(group * 8 + 8, dst.n));
-            group_do(&q, &s, FOUND_IN, wide, src, order, mapped, group, &f, step + first[group]);
+        if (fill) {
+            common[group] = known.n[BOTH] + max(known.n[LOWER], known.n[UPPER]) -
+                            min(known.n[LOWER], known.n[UPPER]);
+        }
+        if (fill ? !c[HERE * t.stride] || total[slot + 1] > room : !all && !c[HERE * t.stride]) {
+            continue;
+        }
+        ask(&q, dst_wide, dst, factor, group * 8, min(group * 8 + 8, dst.n));
+        f = group_do(&q, &s, FOUND_IN, wide, src, order, mapped, group, &known,
+                     fill ? step + first[group] : 0);
+        if (!fill) {
+            c[ALL * t.stride] = f.n[BOTH] + f.n[LOWER] + f.n[UPPER];
+            c[BOTH * t.stride] = f.n[BOTH];
+            c[LOWER * t.stride] = f.n[LOWER];
+            c[UPPER * t.stride] = f.n[UPPER];
+            c[HERE * t.stride] = 1;
         }
     }
 }

@@ -12,8 +12,7 @@ static const struct {
 } kernels[OPS_KERNELS] = {
     [K_MIRROR] = {"mirror_floats", "mirror"},
     [K_PLACES] = {"mirror_places", "mirror"},
-    [K_PERMUTE_WIDE] = {"permute_wide", "permute"},
-    [K_PERMUTE_NARROW] = {"permute_narrow", "permute"},
+    [K_PERMUTE] = {"permute", "permute"},
     [K_ADVANCE] = {"advance", "integrate"},
     [K_REDUCE] = {"reduce_column", "reduce"},
     [K_SKIN_KEEP] = {"skin_keep", "skin"},
@@ -182,15 +181,16 @@ int ops_copy(struct ops *o, struct arena *a, int from, int to, struct error *e)
     return 0;
 }
 
-static int permute_plane(struct ops *o, struct arena *a, struct device_buffer *buffer, size_t size,
-                         uint32_t slot, const struct device_buffer *order, struct error *e)
+static int permute_plane(struct ops *o, struct arena *a, size_t size, uint32_t slot,
+                         const struct device_buffer *order, struct error *e)
 {
-    const uint64_t at = (uint64_t)slot * a->plane;
-    const uint32_t n = (uint32_t)a->n;
-    return OPS_LAUNCH(o, size == 8 ? K_PERMUTE_WIDE : K_PERMUTE_NARROW, n, e, DEVICE_BUFFER(buffer),
-                      DEVICE_VALUE(at), DEVICE_BUFFER(order), DEVICE_BUFFER(&o->scratch),
-                      DEVICE_VALUE(n), DEVICE_BUFFER(&o->words)) ||
-                   device_copy(o->d, buffer, at * size, &o->scratch, 0, n * size, e)
+    const uint64_t plane = a->plane;
+    const uint32_t n = (uint32_t)a->n, from = slot | (size == 4 ? SLOT_NARROW : 0u);
+    struct device_buffer *buffer = size == 8 ? &a->wide : &a->narrow;
+    return OPS_LAUNCH(o, K_PERMUTE, n, e, DEVICE_BUFFER(&a->wide), DEVICE_BUFFER(&a->narrow),
+                      DEVICE_VALUE(plane), DEVICE_VALUE(from), DEVICE_BUFFER(order),
+                      DEVICE_BUFFER(&o->scratch), DEVICE_VALUE(n), DEVICE_BUFFER(&o->words)) ||
+                   device_copy(o->d, buffer, slot * plane * size, &o->scratch, 0, n * size, e)
                ? -1
                : 0;
 }
@@ -208,8 +208,7 @@ int ops_permute(struct ops *o, struct arena *a, const struct device_buffer *orde
         if (column->state && ops_bring(a, (int)c, e))
             return -1;
         for (uint32_t k = 0; column->state && k < column->ncomp; k++)
-            if (permute_plane(o, a, at->size == 8 ? &a->wide : &a->narrow, at->size, at->slot + k,
-                              order, e))
+            if (permute_plane(o, a, at->size, at->slot + k, order, e))
                 return -1;
         a->here[c] = column->state;
         a->there[c] = false;

@@ -62,26 +62,19 @@ kernel void advance(global double *wide, global float *narrow, ulong plane,
 }
 
 /* to[i] = from[order[i]] of a plane, bit for bit. */
-kernel void permute_wide(global const ulong *from, ulong at, global const uint *order,
-                         global ulong *to, uint n, global uint *flags)
+kernel void permute(global const ulong *wide, global const uint *narrow, ulong plane, uint slot,
+                    global const uint *order, global ulong *to, uint n, global uint *flags)
 {
     const uint i = get_global_id(0);
     if (i >= n)
         return;
-    const uint old = order[i];
-    if (old >= n)
+    uint old = order[i];
+    if (old >= n) {
         atomic_or(flags, FLAG_ORDER);
-    to[i] = from[at + (old < n ? old : 0)];
-}
-
-kernel void permute_narrow(global const uint *from, ulong at, global const uint *order,
-                           global uint *to, uint n, global uint *flags)
-{
-    const uint i = get_global_id(0);
-    if (i >= n)
-        return;
-    const uint old = order[i];
-    if (old >= n)
-        atomic_or(flags, FLAG_ORDER);
-    to[i] = from[at + (old < n ? old : 0)];
+        old = 0;
+    }
+    if (slot & NARROW)
+        ((global uint *)to)[i] = narrow[at_of(slot, 0, plane) + old];
+    else
+        to[i] = wide[at_of(slot, 0, plane) + old];
 }

@@ -17,8 +17,7 @@ OPS_TEXT(ops_sides)
 enum ops_kernel {
     K_MIRROR,
     K_PLACES,
-    K_PERMUTE_WIDE,
-    K_PERMUTE_NARROW,
+    K_PERMUTE,
     K_ADVANCE,
     K_REDUCE,
     K_SKIN_KEEP,

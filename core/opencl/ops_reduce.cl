@@ -42,11 +42,18 @@ static inline double group_merge(uint op, double mine, local double *share)
     const uint me = get_local_id(0);
     barrier(CLK_LOCAL_MEM_FENCE);
     share[me] = mine;
+#if WIDE == 8 /* a processor's items come one after the other: the last need not wait for the first */
+    barrier(CLK_LOCAL_MEM_FENCE);
+    for (uint s = GROUP / 2; s > 0 && me == 0; s /= 2)
+        for (uint k = 0; k < s; k++)
+            share[k] = merge(op, share[k], share[k + s]);
+#else
     for (uint s = GROUP / 2; s > 0; s /= 2) {
         barrier(CLK_LOCAL_MEM_FENCE);
         if (me < s)
             share[me] = merge(op, share[me], share[me + s]);
     }
+#endif
     return share[me];
 }
 

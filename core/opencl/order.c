@@ -1,5 +1,5 @@
 /* opencl/order.c -- the order of particles on a device: cell_order and cell_best, index for index
- * (see lists.h; the kernels are order.cl). What is known of all points comes back to the host,
+ * (see lists.h; the kernels are order.cl and crowds.cl). What is known of all points comes back to the host,
  * which reckons the cells as it does for itself. */
 #include "config.h"
 
@@ -8,35 +8,22 @@
 
 #define COUNTS 4096 /* cells whose counts a work item adds up, on a processor */
 
-/* Sums of a kernel over the cells' counts: `width` numbers a work item. */
-static int sums(struct device_search *s, int kernel, size_t cells, size_t width, double least,
-                double *out, struct error *e)
+/* Over the cells' counts: the sum of their squares, of those that are not less than `least`, how many these are. */
+static int sums(struct device_search *s, size_t cells, double least, double out[3], struct error *e)
 {
     const uint32_t n = (uint32_t)cells, each = s->cpu ? COUNTS : 256;
-    const size_t items = search_items(cells, each), bytes = items * width * sizeof(uint64_t);
+    const size_t items = search_items(cells, each), bytes = items * 3 * sizeof(uint64_t);
     const uint64_t *part = search_room(s, bytes, e);
-    int status;
 
-    if (!part || device_reserve(s->d, &s->survey, bytes, "the order of particles", e) != 0) {
+    if (!part || device_reserve(s->d, &s->survey, bytes, "the order of particles", e) != 0 ||
+        SEARCH_LAUNCH(s, K_FULL, items, DEVICE_BUFFER(&s->begin), DEVICE_VALUE(n),
+                      DEVICE_VALUE(each), DEVICE_VALUE(least), DEVICE_BUFFER(&s->survey)) != 0 ||
+        device_read(s->d, &s->survey, 0, s->host, bytes, e) != 0) {
         return -1;
     }
-    if (kernel == K_SQUARES) {
-        status = SEARCH_LAUNCH(s, kernel, items, DEVICE_BUFFER(&s->begin), DEVICE_VALUE(n),
-                               DEVICE_VALUE(each), DEVICE_BUFFER(&s->survey));
-    } else {
-        status = SEARCH_LAUNCH(s, kernel, items, DEVICE_BUFFER(&s->begin), DEVICE_VALUE(n),
-                               DEVICE_VALUE(each), DEVICE_VALUE(least), DEVICE_BUFFER(&s->survey));
-    }
-    if (status != 0 || device_read(s->d, &s->survey, 0, s->host, bytes, e) != 0) {
-        return -1;
-    }
-    for (size_t w = 0; w < width; w++) {
-        out[w] = 0;
-    }
-    for (size_t k = 0; k < items; k++) {
-        for (size_t w = 0; w < width; w++) {
-            out[w] += (double)part[k * width + w];
-        }
+    out[0] = out[1] = out[2] = 0;
+    for (size_t k = 0; k < 3 * items; k++) {
+        out[k % 3] += (double)part[k];
     }
     return 0;
 }
@@ -48,7 +35,7 @@ static int best(struct device_search *s, const struct device_cloud *c,
     struct edge_known k = {
         .dim = s->dim, .n = c->n, .scale = c->scale, .h_sum = v->h_sum, .h_most = v->h_most};
     struct search_index ix = {.n = (uint32_t)c->n};
-    double squares, full[2];
+    double first[3], full[3];
     struct grid g;
 
     for (int a = 0; a < s->dim; a++) {
@@ -58,11 +45,11 @@ static int best(struct device_search *s, const struct device_cloud *c,
     if (!edge_begin(&k, &g, edge)) {
         return 0;
     }
-    if (search_cells(s, c, &g, &ix, e) != 0 || sums(s, K_SQUARES, g.n, 1, 0, &squares, e) != 0 ||
-        sums(s, K_FULL, g.n, 2, EDGE_FULL * squares / (double)c->n, full, e) != 0) {
+    if (search_cells(s, c, &g, &ix, e) != 0 || sums(s, g.n, 0, first, e) != 0 ||
+        sums(s, g.n, EDGE_FULL * first[0] / (double)c->n, full, e) != 0) {
         return -1;
     }
-    *edge = edge_end(&k, &g, full[0], full[1]);
+    *edge = edge_end(&k, &g, full[1], full[2]);
     return 0;
 }
 
@@ -80,8 +67,9 @@ static int crowds(struct device_search *s, const struct search_points *p,
     if (n == 0) {
         return 0;
     }
-    if (device_reserve(s->d, &s->copy, 4 * c->n * sizeof(double), "the order of particles", e) !=
-        0) {
+    if (search_need(s, SEARCH_CROWDS, e) != 0 ||
+        device_reserve(s->d, &s->copy, 4 * c->n * sizeof(double), "the order of particles", e) !=
+            0) {
         return -1;
     }
     return SEARCH_LAUNCH(s, K_CROWDS, n, DEVICE_BUFFER(c->wide), DEVICE_VALUE(*p), DEVICE_VALUE(id),

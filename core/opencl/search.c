@@ -1,5 +1,5 @@
 /* opencl/search.c -- a device's search: its programs and rooms, what is known of clouds, and the
- * structure in which sources are sought (see search.h; the kernels are points.cl and search.cl). */
+ * structure in which sources are sought (see search.h; the kernels are survey.cl, search.cl and own_order.cl). */
 #include "config.h"
 
 #include "opencl/search.h"
@@ -18,51 +18,66 @@
 
 /* -- Programs -------- */
 
-static char *text_of(const struct device_search *s)
+/* By set: its kernels, from the first one on, what their time counts as, and its texts. */
+static const struct {
+    int first, end;
+    const char *const text[6];
+} sets[SEARCH_SETS] = {
+    [SEARCH_ALL] = {K_SURVEY,
+                    K_GATHER,
+                    {points_text, survey_text, search_text, lists_text, bundles_text, order_text}},
+    [SEARCH_OWN_ORDER] = {K_GATHER, K_CROWDS, {points_text, own_order_text}},
+    [SEARCH_CROWDS] = {K_CROWDS, SEARCH_KERNELS, {points_text, crowds_text}},
+};
+
+static char *text_of(enum search_set set)
 {
-    const char *const parts[] = {points_text, search_text, lists_text, s->cpu ? bundles_text : "",
-                                 order_text};
     size_t size = 1;
     char *text;
 
-    for (size_t k = 0; k < sizeof parts / sizeof parts[0]; k++) {
-        size += strlen(parts[k]);
+    for (size_t k = 0; k < 6 && sets[set].text[k]; k++) {
+        size += strlen(sets[set].text[k]);
     }
     text = malloc(size);
     if (text) {
         *text = '\0';
-        for (size_t k = 0; k < sizeof parts / sizeof parts[0]; k++) {
-            strcat(text, parts[k]);
+        for (size_t k = 0; k < 6 && sets[set].text[k]; k++) {
+            strcat(text, sets[set].text[k]);
         }
     }
     return text;
 }
 
-static int programs(struct device_search *s, struct error *e)
+int search_need(struct device_search *s, enum search_set set, struct error *e)
 {
     static const char *const name[SEARCH_KERNELS] = {
-        [K_SURVEY] = "survey",         [K_GATHER] = "gather",         [K_LEAVES] = "leaves_make",
-        [K_BOXES] = "boxes_make",      [K_CELL] = "cells_count",      [K_KEY] = "cells_key",
-        [K_MORTON] = "morton_key",     [K_SCATTER] = "cells_scatter", [K_COUNT] = "list_count",
-        [K_LOOK] = "bundles_look",     [K_PUT] = "bundles_put",       [K_FILL] = "list_fill",
-        [K_PAIRS] = "list_pairs",      [K_SQUARES] = "full_squares",  [K_FULL] = "full_sums",
-        [K_SORT_CELLS] = "cells_sort", [K_CROWDS] = "crowds_sort"};
-    char options[128], *text = text_of(s);
+        [K_SURVEY] = "survey",      [K_CELL] = "cells_count",      [K_SCATTER] = "cells_scatter",
+        [K_LEAVES] = "leaves_make", [K_BOXES] = "boxes_make",      [K_LIST] = "list_make",
+        [K_PAIRS] = "list_pairs",   [K_LOOK] = "bundles_look",     [K_PUT] = "bundles_put",
+        [K_FULL] = "full_sums",     [K_SORT_CELLS] = "cells_sort", [K_GATHER] = "gather",
+        [K_KEY] = "cells_key",      [K_MORTON] = "morton_key",     [K_CROWDS] = "crowds_sort"};
+    char options[128], *text;
     int status;
 
+    if (s->program[set]) {
+        return 0;
+    }
+    text = text_of(set);
     if (!text) {
         return error_memory(e, "the neighbour search's program", 1);
     }
     snprintf(options, sizeof options, "-DDIM=%d -DCPU=%d -DWG=%d -DEACH=%uul -DSEARCH=%d", s->dim,
              s->cpu, s->cpu ? 1 : 64, search_each(s), (int)s->kind);
-    status = device_build(s->d, &s->program, text, options, "the neighbour search", e);
+    status = device_build(s->d, &s->program[set], text, options, "the neighbour search", e);
     free(text);
-    for (int k = 0; k < SEARCH_KERNELS && status == 0; k++) {
+    for (int k = sets[set].first; k < sets[set].end && status == 0; k++) {
+        const bool orders = k == K_FULL || k == K_SORT_CELLS || k == K_CROWDS;
+
         if ((k == K_LOOK || k == K_PUT) && !s->cpu) {
             continue;
         }
-        status = device_kernel(s->d, s->program, name[k],
-                               k < K_SQUARES ? "neighbour lists" : "order", &s->kernel[k], e);
+        status = device_kernel(s->d, s->program[set], name[k], orders ? "order" : "neighbour lists",
+                               &s->kernel[k], e);
     }
     return status;
 }
@@ -104,7 +119,8 @@ int search_open(struct device_search **out, struct device *d, int dim,
               : manager == neighbour_manager_at(NEIGHBOURS_RADIX) ? SEARCH_KEYS
                                                                   : SEARCH_TREE;
     s->room = dim == 3 ? 384 : dim == 2 ? 128 : 64;
-    if (programs(s, e) != 0 || tables(s, e) != 0 || device_sort_open(&s->sort, d, cpu, e) != 0 ||
+    if (search_need(s, SEARCH_ALL, e) != 0 || tables(s, e) != 0 ||
+        device_sort_open(&s->sort, d, cpu, e) != 0 ||
         device_reserve(d, &s->need, 2 * sizeof(uint32_t), "the neighbour search", e) != 0 ||
         device_reserve(d, &s->total, 2 * sizeof(uint64_t), "the neighbour search", e) != 0) {
         device_search_close(s);
@@ -133,7 +149,9 @@ void device_search_close(struct device_search *s)
         device_release(s->d, all[k]);
     }
     device_sort_close(s->sort);
-    device_program_free(s->d, s->program);
+    for (int set = 0; set < SEARCH_SETS; set++) {
+        device_program_free(s->d, s->program[set]);
+    }
     free(s->host);
     free(s);
 }
@@ -240,7 +258,8 @@ static int sort_keys(struct device_search *s, const struct device_cloud *src,
 {
     const struct search_points p = search_points_of(src);
 
-    if (device_reserve(s->d, &s->key, src->n * sizeof(uint64_t), "the neighbour search", e) != 0 ||
+    if (search_need(s, SEARCH_OWN_ORDER, e) != 0 ||
+        device_reserve(s->d, &s->key, src->n * sizeof(uint64_t), "the neighbour search", e) != 0 ||
         device_reserve(s->d, &s->order, src->n * sizeof(uint32_t), "the neighbour search", e) !=
             0 ||
         SEARCH_LAUNCH(s, kernel, search_items(src->n, search_each(s)), DEVICE_BUFFER(src->wide),

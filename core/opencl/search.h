@@ -36,24 +36,24 @@ enum search_kind { SEARCH_TREE, SEARCH_CELLS, SEARCH_KEYS };
 
 enum {
     K_SURVEY,
-    K_GATHER,
+    K_CELL,
+    K_SCATTER,
     K_LEAVES,
     K_BOXES,
-    K_CELL,
-    K_KEY,
-    K_MORTON,
-    K_SCATTER,
-    K_COUNT,
+    K_LIST,
+    K_PAIRS,
     K_LOOK,
     K_PUT,
-    K_FILL,
-    K_PAIRS,
-    K_SQUARES,
     K_FULL,
     K_SORT_CELLS,
+    K_GATHER,
+    K_KEY,
+    K_MORTON,
     K_CROWDS,
     SEARCH_KERNELS
 };
+/* Programs: what every search needs, an order of its own, crowded cells. */
+enum search_set { SEARCH_ALL, SEARCH_OWN_ORDER, SEARCH_CROWDS, SEARCH_SETS };
 
 struct device_search {
     struct device *d;
@@ -62,7 +62,7 @@ struct device_search {
     bool cpu, own_order; /* own_order: sources are read through an order of the search's own */
     enum search_kind kind;
     bool morton;
-    struct device_program *program;
+    struct device_program *program[SEARCH_SETS];
     struct device_kernel *kernel[SEARCH_KERNELS];
     struct device_buffer survey, box, copy, order, key, cell, begin, total, tables;
     struct device_buffer slot, counts, pairs, need;
@@ -90,6 +90,8 @@ static inline uint32_t search_each(const struct device_search *s)
 /* device_search_open, for a processor or for another kind of device. */
 int search_open(struct device_search **out, struct device *d, int dim,
                 const struct neighbour_manager *manager, bool cpu, struct error *e);
+/* Builds a program, unless it is there: compilers take a fraction of a second a kernel. */
+int search_need(struct device_search *s, enum search_set set, struct error *e);
 /* Room on the host for what is read back; NULL: no memory. */
 void *search_room(struct device_search *s, size_t bytes, struct error *e);
 struct search_points search_points_of(const struct device_cloud *c);

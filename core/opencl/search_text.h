@@ -9,10 +9,13 @@
 
 TEXT sort_text[];
 TEXT points_text[];
+TEXT survey_text[];
 TEXT search_text[];
 TEXT lists_text[];
 TEXT bundles_text[];
 TEXT order_text[];
+TEXT own_order_text[];
+TEXT crowds_text[];
 
 #undef TEXT
 

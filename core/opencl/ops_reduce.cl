@@ -57,11 +57,14 @@ static inline double group_merge(uint op, double mine, local double *share)
     return share[me];
 }
 
-/* What an item has in its k-th turn: from `i` on 8 numbers, those behind n left out. */
+/* What an item has in its k-th turn: from `i` on 8 numbers, those behind n left out. Items of a GPU stand side by
+ * side; one of a processor has numbers that do, where the order does not matter: it reads ahead of them. */
 #define TURNS (CHUNK / GROUP / 8)
-static inline ulong turn_of(uint k)
+static inline ulong turn_of(uint k, bool ordered)
 {
-    return (ulong)get_group_id(0) * CHUNK + (k * GROUP + get_local_id(0)) * 8;
+    const uint me = get_local_id(0);
+    const uint turn = WIDE == 8 && !ordered ? me * TURNS + k : k * GROUP + me;
+    return (ulong)get_group_id(0) * CHUNK + turn * 8;
 }
 
 static inline long8 inside(ulong i, ulong n)
@@ -78,7 +81,7 @@ reduce_column(global const double *wide, global const float *narrow, ulong plane
     double8 all = start_of(op);
     long8 none = 0;
     for (uint k = 0; k < TURNS; k++) {
-        const ulong i = turn_of(k);
+        const ulong i = turn_of(k, op == SUM);
         if (i >= n)
             break;
         double8 value = get_8(wide, narrow, slot, 0, plane, i);
@@ -101,7 +104,7 @@ skin_change(global const double *wide, global const float *narrow, ulong plane, 
     double8 most = 0.0, room = (double)INFINITY;
     long8 none = 0;
     for (uint k = 0; k < TURNS; k++) {
-        const ulong i = turn_of(k);
+        const ulong i = turn_of(k, false);
         if (i >= n)
             break;
         double8 r2 = 0.0;

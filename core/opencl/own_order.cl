@@ -18,17 +18,6 @@ KERNEL void gather(__global const double *wide, struct points p, uint has_h,
     }
 }
 
-KERNEL void cells_key(__global const double *wide, struct points p, struct index g,
-                      __global ulong *key, __global uint *order)
-{
-    const ulong begin = (ulong)get_global_id(0) * EACH, end = min(begin + EACH, (ulong)p.n);
-
-    for (ulong i = begin; i < end; i++) {
-        key[i] = cell_of(&g, wide, p, i);
-        order[i] = (uint)i;
-    }
-}
-
 /* The lowest 21 bits, two apart. */
 INLINE ulong spread3(ulong x)
 {
@@ -49,22 +38,28 @@ INLINE ulong spread2(ulong x)
     return (x | x << 1) & 0x5555555555555555UL;
 }
 
-/* Of octree.c: the cells' numbers along the axes, bit by bit in turns. */
-KERNEL void morton_key(__global const double *wide, struct points p, struct index g,
-                       __global ulong *key, __global uint *order)
+/* The cells' numbers along the axes, bit by bit in turns: as octree.c has it. */
+INLINE ulong morton_of(const struct index *g, __global const double *wide, struct points p, ulong i)
+{
+    ulong key = 0;
+
+    FOR_AXES
+    {
+        const ulong c = along(g, a, wide[p.x + a * p.plane + i]);
+
+        key |= (DIM == 3 ? spread3(c) : DIM == 2 ? spread2(c) : c) << a;
+    }
+    return key;
+}
+
+/* Of each point its cell's number, or its place along Morton's curve; and its index. */
+KERNEL void keys(__global const double *wide, struct points p, struct index g, uint morton,
+                 __global ulong *key, __global uint *order)
 {
     const ulong begin = (ulong)get_global_id(0) * EACH, end = min(begin + EACH, (ulong)p.n);
 
     for (ulong i = begin; i < end; i++) {
-        ulong k = 0;
-
-        FOR_AXES
-        {
-            const ulong c = along(&g, a, wide[p.x + a * p.plane + i]);
-
-            k |= (DIM == 3 ? spread3(c) : DIM == 2 ? spread2(c) : c) << a;
-        }
-        key[i] = k;
+        key[i] = morton ? morton_of(&g, wide, p, i) : cell_of(&g, wide, p, i);
         order[i] = (uint)i;
     }
 }

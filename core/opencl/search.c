@@ -55,7 +55,7 @@ int search_need(struct device_search *s, enum search_set set, struct error *e)
         [K_LEAVES] = "leaves_make", [K_BOXES] = "boxes_make",      [K_LIST] = "list_make",
         [K_PAIRS] = "list_pairs",   [K_LOOK] = "bundles_look",     [K_PUT] = "bundles_put",
         [K_FULL] = "full_sums",     [K_SORT_CELLS] = "cells_sort", [K_GATHER] = "gather",
-        [K_KEY] = "cells_key",      [K_MORTON] = "morton_key",     [K_CROWDS] = "crowds_sort"};
+        [K_KEYS] = "keys",          [K_CROWDS] = "crowds_sort"};
     char options[128], *text;
     int status;
 
@@ -254,17 +254,18 @@ static int copy(struct device_search *s, const struct device_cloud *src, bool sy
 
 /* Sorts sources by a key of eight bytes. */
 static int sort_keys(struct device_search *s, const struct device_cloud *src,
-                     const struct search_index *ix, int kernel, unsigned bits, struct error *e)
+                     const struct search_index *ix, bool morton, unsigned bits, struct error *e)
 {
     const struct search_points p = search_points_of(src);
+    const uint32_t along_curve = morton;
 
     if (search_need(s, SEARCH_OWN_ORDER, e) != 0 ||
         device_reserve(s->d, &s->key, src->n * sizeof(uint64_t), "the neighbour search", e) != 0 ||
         device_reserve(s->d, &s->order, src->n * sizeof(uint32_t), "the neighbour search", e) !=
             0 ||
-        SEARCH_LAUNCH(s, kernel, search_items(src->n, search_each(s)), DEVICE_BUFFER(src->wide),
-                      DEVICE_VALUE(p), DEVICE_VALUE(*ix), DEVICE_BUFFER(&s->key),
-                      DEVICE_BUFFER(&s->order)) != 0) {
+        SEARCH_LAUNCH(s, K_KEYS, search_items(src->n, search_each(s)), DEVICE_BUFFER(src->wide),
+                      DEVICE_VALUE(p), DEVICE_VALUE(*ix), DEVICE_VALUE(along_curve),
+                      DEVICE_BUFFER(&s->key), DEVICE_BUFFER(&s->order)) != 0) {
         return -1;
     }
     return device_sort_pairs(s->sort, &s->key, &s->order, src->n, sizeof(uint64_t), bits, e);
@@ -331,7 +332,7 @@ static int morton(struct device_search *s, const struct device_cloud *src,
         ix->last[a] = cells - 1;
     }
     ix->inverse = cells / longest;
-    return sort_keys(s, src, ix, K_MORTON, axis_bits[s->dim] * (unsigned)s->dim, e);
+    return sort_keys(s, src, ix, true, axis_bits[s->dim] * (unsigned)s->dim, e);
 }
 
 static int keys_make(struct device_search *s, const struct device_cloud *src,
@@ -352,7 +353,7 @@ static int keys_make(struct device_search *s, const struct device_cloud *src,
         ix->step[a] = 1ull << KEY_BITS * a;
     }
     bits += bits_in(fmin(ix->last[top], (all->most[top] - all->least[top]) * ix->inverse + 1));
-    return sort_keys(s, src, ix, K_KEY, bits, e);
+    return sort_keys(s, src, ix, false, bits, e);
 }
 
 int search_cells(struct device_search *s, const struct device_cloud *c, const struct grid *g,
@@ -391,7 +392,7 @@ static int cells_make(struct device_search *s, const struct device_cloud *src,
         device_scan(s->sort, &s->begin, 0, g.n, &s->begin, 0, &s->total, 0, e) != 0) {
         return -1;
     }
-    return sort_keys(s, src, ix, K_KEY, bits_in((double)g.n), e);
+    return sort_keys(s, src, ix, false, bits_in((double)g.n), e);
 }
 
 int search_make(struct device_search *s, const struct device_cloud *src,

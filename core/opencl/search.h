@@ -47,8 +47,7 @@ enum {
     K_FULL,
     K_SORT_CELLS,
     K_GATHER,
-    K_KEY,
-    K_MORTON,
+    K_KEYS,
     K_CROWDS,
     SEARCH_KERNELS
 };

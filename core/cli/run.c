@@ -43,7 +43,7 @@ static const struct argp_option options[] = {
      0},
     {"dry-run", KEY_DRY, NULL, 0,
      "Do everything but the steps: check, make the particles, show the plan", 0},
-    {"strict", KEY_STRICT, NULL, 0, "Fix the order of every sum (so it is in this version)", 0},
+    {"strict", KEY_STRICT, NULL, 0, "Every sum in the order of the particles' ids, or exact: the same bits on any number of ranks (slower)", 0},
     {"audit", KEY_AUDIT, NULL, 0, "Prove that passes touch only what they declare (slow)", 0},
     {"quiet", KEY_QUIET, NULL, 0, "No progress, no table", 0},
     {"verbose", KEY_VERBOSE, NULL, 0, "Show the plan, and what plugins say", 0},
@@ -57,7 +57,7 @@ struct arguments {
     double until;
     uint64_t steps;
     uint32_t path;
-    bool dry, audit, quiet, verbose;
+    bool dry, audit, quiet, verbose, strict;
 };
 
 static double number(struct argp_state *state, const char *option, const char *text, double min,
@@ -123,6 +123,7 @@ static error_t parse(int key, char *arg, struct argp_state *state)
         a->dry = true;
         return 0;
     case KEY_STRICT:
+        a->strict = true;
         return 0;
     case KEY_AUDIT:
         a->audit = true;
@@ -204,6 +205,7 @@ static int run_or_show(const struct arguments *a, const char *folder, struct res
 {
     struct loaded l;
     int status = loaded_make(&l, &a->scene, a->audit, e);
+    l.plan.strict = a->strict;
     if (!status && a->verbose)
         l.registry.log_level = SPH_LOG_INFO;
     if (!status && !resume)

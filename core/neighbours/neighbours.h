@@ -9,6 +9,9 @@
  * all ascends in index, and behind it those that found none. Sources up to 0.5 % beyond the enlarged reach may be in
  * it.
  *
+ * Where the sources have an order in which they are to be visited (cloud.visits) it is that, for all lanes, and
+ * spans begin anew wherever it leaves 65535 indices.
+ *
  * Sort the sources by cell_order now and then: those out of all order are sorted aside, which
  * costs about as much again, and a group whose destinations are far apart costs twenty times
  * another. */
@@ -22,6 +25,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+struct visits;
+
 /* Points in up to three dimensions with their reach (support radius); not owned. */
 struct cloud {
     int dim;
@@ -29,6 +34,7 @@ struct cloud {
     const double *x[3];
     const double *h; /* smoothing length; reach = scale * h */
     double scale;
+    const struct visits *visits; /* NULL: lists visit sources as suits them; else in this order (visit.h) */
 };
 
 /* Destinations with more neighbours than somebody foresees. */

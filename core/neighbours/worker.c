@@ -8,6 +8,8 @@
  * the search's own, are sorted. */
 #include "neighbours/worker.h"
 
+#include "neighbours/visit.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -157,6 +159,27 @@ static void found_sort_as_one(const struct job *j, struct worker *w)
             n[by] = 0;
         }
         n[BY_BOTH] = bitset_take(&w->unsorted, w->found.source[BY_BOTH]);
+    }
+}
+
+/* What was found, for both halves, in the order in which it is to be visited. */
+static void found_by_visits(const struct job *j, struct worker *w)
+{
+    const struct visits *v = j->all->visits;
+    size_t *n = w->found.n;
+
+    if (!unsorted_begin(j, w) || !found_reserve(w, BY_BOTH, n[0] + n[1] + n[2])) {
+        return;
+    }
+    for (int by = 0; by < BY_SIDES; by++) {
+        for (size_t k = 0; k < n[by]; k++) {
+            bitset_add(&w->unsorted, v->place[w->found.source[by][k]]);
+        }
+        n[by] = 0;
+    }
+    n[BY_BOTH] = bitset_take(&w->unsorted, w->found.source[BY_BOTH]);
+    for (size_t k = 0; k < n[BY_BOTH]; k++) {
+        w->found.source[BY_BOTH][k] = v->source[w->found.source[BY_BOTH][k]];
     }
 }
 
@@ -362,6 +385,28 @@ static void put_span(const struct job *j, struct worker *w, const struct rest *r
     w->n_step += n[BY_BOTH] + more + 2 * turns;
 }
 
+/* Of what does not ascend: as many as lie within a span's reach of each other. */
+static bool rest_cut_visits(const struct found *f, struct rest *r, uint32_t *base)
+{
+    const uint32_t *source = f->source[BY_BOTH];
+    size_t k = r->at[BY_BOTH];
+    uint32_t least = UINT32_MAX, most = 0;
+
+    for (; k < f->n[BY_BOTH] && k - r->at[BY_BOTH] < UINT16_MAX; k++) {
+        uint32_t low = source[k] < least ? source[k] : least;
+        uint32_t high = source[k] > most ? source[k] : most;
+
+        if (high - low >= UINT16_MAX) {
+            break;
+        }
+        least = low;
+        most = high;
+    }
+    *base = least;
+    r->end[BY_BOTH] = k;
+    return k > r->at[BY_BOTH];
+}
+
 /* -- Crowds ------------------------------------------------------------------------------------ */
 
 /* Of what was found of a group those that lie within reach of destination i, but for itself. */
@@ -421,11 +466,13 @@ static void put(const struct job *j, struct worker *w, size_t group)
 
     if (!w->no_memory && crowd_look(j, w, group) &&
         reserve(w, &w->step, &w->step_capacity, w->n_step + n + STEPS_MORE, sizeof *w->step)) {
-        for (; rest_base(f, &r, &base); spans++) {
+        for (; j->all->visits ? rest_cut_visits(f, &r, &base) : rest_base(f, &r, &base); spans++) {
             if (!reserve(w, &w->span, &w->span_capacity, w->n_span + 1, sizeof *w->span)) {
                 break;
             }
-            rest_cut(f, &r, base);
+            if (!j->all->visits) {
+                rest_cut(f, &r, base);
+            }
             put_span(j, w, &r, base);
             memcpy(r.at, r.end, sizeof r.at);
         }
@@ -481,7 +528,11 @@ static void group_in_pieces(const struct job *j, struct worker *w, size_t group)
         take(j, w, &f, piece.first, piece.last, NO_LEAF);
         first = piece.last;
     }
-    found_sort_as_one(j, w);
+    if (j->all->visits) {
+        found_by_visits(j, w);
+    } else {
+        found_sort_as_one(j, w);
+    }
     put(j, w, group);
 }
 
@@ -496,7 +547,9 @@ static void bundle(const struct job *j, struct worker *w, const struct stretch *
         size_t begin = group * LANES, end = begin + LANES;
 
         take(j, w, &f, begin, end < j->dst->n ? end : j->dst->n, (uint32_t)group);
-        if (j->src->order) {
+        if (j->all->visits) {
+            found_by_visits(j, w);
+        } else if (j->src->order) {
             found_sort(j, w, group);
         }
         put(j, w, group);

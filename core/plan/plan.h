@@ -154,6 +154,8 @@ struct plan {
     struct plan_list *list;
     size_t n_list;
     enum precision precision;
+    bool
+        strict; /* every sum in an order that depends on nothing but the particles' ids, or exact */
     bool on_device;                          /* runs on the scene's OpenCL device */
     const struct neighbour_manager *manager; /* NULL: as it suits */
     double skin;                             /* of neighbour lists, a fraction of the support */

@@ -24,6 +24,7 @@ static struct cloud cloud_of(const struct run *r, size_t array, size_t frame, bo
     const struct plan_array *a = &r->plan->array[array];
     struct cloud cloud = {.dim = r->plan->dim, .scale = frame_support(r->plan)};
     cloud.n = a->p.n + (ghosts ? a->p.n_ghost : 0);
+    cloud.visits = ghosts && r->plan->strict ? &r->visits[array] : NULL;
     const struct column *h = &a->p.column[frame_reach(r, frame, array)];
     cloud.h = h->size == sizeof(double) ? h->data : r->wide_h[array];
     for (int c = 0; c < r->plan->dim; c++)
@@ -268,6 +269,18 @@ static int make_list(struct run *r, size_t k, bool counted, struct error *e)
     return 0;
 }
 
+static int make_visits(struct run *r, struct error *e)
+{
+    for (size_t a = 0; r->plan->strict && a < r->plan->n_array; a++) {
+        const struct plan_array *pa = &r->plan->array[a];
+        run_refresh(r, a, pa->id);
+        if (visits_make(&r->visits[a], pa->p.column[pa->id].data, r->ghosts[a].image, pa->p.n,
+                        pa->p.n_ghost, r->threads, e))
+            return -1;
+    }
+    return 0;
+}
+
 /* All lists of a frame. */
 static int make_frame(struct run *r, size_t frame, bool counted, struct error *e)
 {
@@ -284,7 +297,7 @@ static int make_lists(struct run *r, bool sorted, struct error *e)
     if (widen_h(r, e)) /* they stand in another order now */
         return -1;
     find_range_of_h(r);
-    if (make_ghosts(r, e) || widen_h(r, e))
+    if (make_ghosts(r, e) || widen_h(r, e) || make_visits(r, e))
         return -1;
     if (sorted || !r->lists_made)
         memset(r->frame_made, false, r->plan->n_frame);

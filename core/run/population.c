@@ -1,6 +1,6 @@
 /* run/population.c -- particles that functions remove and create, done once at the end of a step: what
- * they wrote in int32 properties is carried out array by array, in the order of the particles, so
- * that a run repeats itself. */
+ * they wrote in int32 properties is carried out array by array, new particles in the order of their
+ * parents' ids, so that a run repeats itself. */
 #include "run/device.h"
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +13,36 @@ struct change {
 static const int32_t *column_of(const struct particles *p, const char *name)
 {
     return name ? p->column[particles_find(p, name)].data : NULL;
+}
+
+struct parent {
+    int64_t id;
+    uint32_t index;
+};
+
+static int by_id(const void *a, const void *b)
+{
+    const int64_t p = ((const struct parent *)a)->id, q = ((const struct parent *)b)->id;
+    return (p > q) - (p < q);
+}
+
+/* The copies in the order of their parents' ids, so that who gets which id does not depend on how particles
+ * stand. */
+static int order_copies(struct change *c, const int64_t *id, struct error *e)
+{
+    const size_t n = c->n - c->n_kept;
+    struct parent *parent = malloc((n + 1) * sizeof *parent);
+    if (!parent)
+        return error_memory(e, "new particles", n * sizeof *parent);
+    for (size_t k = 0; k < n; k++) {
+        const uint32_t i = c->index[c->n_kept + k];
+        parent[k] = (struct parent){id[i], i};
+    }
+    qsort(parent, n, sizeof *parent, by_id);
+    for (size_t k = 0; k < n; k++)
+        c->index[c->n_kept + k] = parent[k].index;
+    free(parent);
+    return 0;
 }
 
 /* The survivors, then the copies, `create` wanted. */
@@ -90,7 +120,7 @@ static int apply(struct run *r, const struct pass *p, const sph_population *d, s
 {
     struct plan_array *a = &r->plan->array[p->dst.array];
     struct change c = {0};
-    if (survey(&c, &a->p, d, e))
+    if (survey(&c, &a->p, d, e) || order_copies(&c, a->p.column[a->id].data, e))
         return error_prefix(e, "%s at step %llu", p->name, (unsigned long long)r->step);
     int status = 0;
     if (c.n != a->p.n || c.n_kept != c.n) {

@@ -1,6 +1,7 @@
 /* run/reduce.c -- the global sum, minimum or maximum of a column: summed in blocks of particles and the
  * blocks in order, so that it is the same for any number of threads. */
 #include "base/clones.h"
+#include "base/exact_sum.h"
 #include "run/run.h"
 #include <math.h>
 #include <stdlib.h>
@@ -77,6 +78,16 @@ double reduce_range(const struct column *value, const struct column *mass, uint3
     return out;
 }
 
+static double exact(const struct column *value, const struct column *mass, size_t n)
+{
+    struct exact_sum sum = {0};
+    for (size_t i = 0; i < n; i++) {
+        const double of = column_get(value, 0, i);
+        exact_add(&sum, mass ? column_get(mass, 0, i) * of : of);
+    }
+    return exact_value(&sum);
+}
+
 double run_reduce(const struct run *r, const struct reduction *d)
 {
     const struct plan_array *a = &r->plan->array[d->array];
@@ -85,6 +96,8 @@ double run_reduce(const struct run *r, const struct reduction *d)
     const struct column *value = &a->p.column[d->column],
                         *mass = weighted ? &a->p.column[a->mass] : NULL;
     const long blocks = (long)((a->p.n + BLOCK - 1) / BLOCK);
+    if (r->plan->strict && op == SPH_REDUCE_SUM)
+        return exact(value, mass, a->p.n);
     double *part = malloc(((size_t)blocks + 1) * sizeof *part);
     double out = reduce_range(value, mass, op, 0, 0);
 #pragma omp parallel for schedule(static) num_threads(r->threads) if (part && blocks > 4)

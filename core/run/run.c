@@ -67,6 +67,7 @@ int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool 
     r->suspect = true;
     r->ghosts = calloc(n + 1, sizeof *r->ghosts);
     r->list = calloc(plan->n_list + 1, sizeof *r->list);
+    r->visits = calloc(n + 1, sizeof *r->visits);
     r->kept = calloc(n * plan->n_frame + 1, sizeof *r->kept);
     r->cloud = calloc(n + 1, sizeof *r->cloud);
     r->change = calloc(n + 1, sizeof *r->change);
@@ -79,9 +80,9 @@ int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool 
     r->h_low = calloc(2 * n + 1, sizeof *r->h_low);
     r->h_high = r->h_low + n;
     r->reduced = calloc(plan->n_reduction + 1, sizeof *r->reduced);
-    if (!r->ghosts || !r->list || !r->kept || !r->cloud || !r->change || !r->has_change ||
-        !r->frame_made || !r->frozen || !r->stale || !r->mirror_old || !r->wide_h || !r->h_low ||
-        !r->reduced)
+    if (!r->ghosts || !r->list || !r->visits || !r->kept || !r->cloud || !r->change ||
+        !r->has_change || !r->frame_made || !r->frozen || !r->stale || !r->mirror_old ||
+        !r->wide_h || !r->h_low || !r->reduced)
         return error_memory(e, "the run", n * n * sizeof *r->list);
     for (size_t i = 0; i < plan->n_reduction; i++)
         r->reduced[i] = NAN;
@@ -119,6 +120,8 @@ void run_free(struct run *r)
     for (size_t a = 0; a < n; a++) {
         if (r->ghosts)
             ghosts_fini(&r->ghosts[a]);
+        if (r->visits)
+            visits_fini(&r->visits[a]);
         if (r->stale)
             free(r->stale[a]);
         if (r->mirror_old)
@@ -132,6 +135,7 @@ void run_free(struct run *r)
         group_list_fini(&r->list[k]);
     free(r->ghosts);
     free(r->list);
+    free(r->visits);
     free(r->kept);
     free(r->cloud);
     free(r->change);

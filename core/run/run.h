@@ -6,6 +6,7 @@
 
 #include "domain/sides.h"
 #include "neighbours/skin.h"
+#include "neighbours/visit.h"
 #include "plan/plan.h"
 #include "registry/extension.h"
 #include <math.h>
@@ -39,6 +40,7 @@ struct run {
     /* lists.c */
     struct ghosts *ghosts;   /* [array] */
     struct group_list *list; /* [plan->n_list] */
+    struct visits *visits;   /* [array]: the order of sums, if it is strict */
     struct skin *kept; /* [frame * n_array + k]: of the frame's k-th array, when lists were made */
     struct cloud *cloud;        /* [array]: room for clouds */
     struct skin_change *change; /* [array]: of places since then, if has_change: seen in passing */

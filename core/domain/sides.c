@@ -8,9 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define IMAGE_LOW 1u
-#define IMAGE_HIGH 2u
-
 /* -- Wrapping ---------------------------------------------------------------------------------- */
 
 static double wrap_periodic(double x, double min, double max)
@@ -190,7 +187,7 @@ int ghosts_store(struct ghosts *g, struct store *s, size_t n, struct error *e)
     return 0;
 }
 
-static int ghosts_reserve(struct ghosts *g, size_t n, struct error *e)
+int ghosts_reserve(struct ghosts *g, size_t n, struct error *e)
 {
     size_t capacity = n + n / 8;
     uint32_t *parent;
@@ -222,7 +219,12 @@ static bool near_side(const struct box *box, int axis, unsigned image, double x,
     return (at_low ? x - box->min[axis] : box->max[axis] - x) < margin;
 }
 
-static double image_of(const struct box *box, int axis, unsigned image, double x)
+bool sides_has_image(const struct box *box, int axis, unsigned image)
+{
+    return sides_periodic(box, axis) || sides_mirror(box, axis, image == IMAGE_HIGH);
+}
+
+double sides_image(const struct box *box, int axis, unsigned image, double x)
 {
     double min = box->min[axis], max = box->max[axis];
 
@@ -261,7 +263,7 @@ static int add_layer(struct ghosts *g, const struct box *box, struct particles *
             g->parent[g->n] = parent;
             g->image[g->n] = (uint8_t)(before | image << 2 * axis);
             for (int a = 0; a < p->dim; a++) {
-                x[a][p->n + g->n] = a == axis ? image_of(box, axis, image, x[a][i]) : x[a][i];
+                x[a][p->n + g->n] = a == axis ? sides_image(box, axis, image, x[a][i]) : x[a][i];
             }
             g->n++;
         }
@@ -335,31 +337,53 @@ int ghosts_make(struct ghosts *g, const struct box *box, struct particles *p, do
     return 0;
 }
 
+/* The image bits that change the sign of component k. */
+static unsigned turning_of(const struct box *box, int dim, const struct column *c, uint32_t k)
+{
+    unsigned turning = 0;
+
+    for (int a = 0; a < dim; a++) {
+        if (!sides_periodic(box, a) && sides_turn(c->type, dim, k, a)) {
+            turning |= 3u << 2 * a;
+        }
+    }
+    return turning;
+}
+
+/* A component of a tensor turns once for each of its two axes that is mirrored. */
+static double turn(double value, unsigned turned)
+{
+    int times = ((turned & 3u) != 0) + ((turned & 12u) != 0) + ((turned & 48u) != 0);
+
+    return times % 2 ? -value : value;
+}
+
+double sides_value(const struct box *box, int dim, const struct column *c, uint32_t k,
+                   unsigned code, double value)
+{
+    if (strcmp(c->name, "x") == 0) {
+        code = code >> 2 * k & 3u;
+        return code ? sides_image(box, (int)k, code, value) : value;
+    }
+    return turn(value, code & turning_of(box, dim, c, k));
+}
+
 /* Component k of a real column; what an image is: a position shifts, a direction turns. */
 static void refresh_real(const struct ghosts *g, const struct box *box, struct particles *p,
                          const struct column *c, uint32_t k)
 {
     bool position = strcmp(c->name, "x") == 0;
-    unsigned turning = 0; /* the image bits that change the sign */
+    unsigned turning = position ? 0 : turning_of(box, p->dim, c, k);
 
-    for (int a = 0; a < p->dim && !position; a++) {
-        if (!sides_periodic(box, a) && sides_turn(c->type, p->dim, k, a)) {
-            turning |= 3u << 2 * a;
-        }
-    }
     for (size_t q = 0; q < g->n; q++) {
         double value = column_get(c, k, g->parent[q]);
         unsigned image = g->image[q];
 
         if (position) {
             image = image >> 2 * k & 3u;
-            value = image ? image_of(box, (int)k, image, value) : value;
+            value = image ? sides_image(box, (int)k, image, value) : value;
         } else if (image & turning) {
-            /* A component of a tensor turns once for each of its two axes that is mirrored. */
-            unsigned turned = image & turning;
-            int times = ((turned & 3u) != 0) + ((turned & 12u) != 0) + ((turned & 48u) != 0);
-
-            value = times % 2 ? -value : value;
+            value = turn(value, image & turning);
         }
         column_set(c, k, p->n + q, value);
     }

@@ -36,6 +36,8 @@ struct ghosts {
 };
 
 void ghosts_fini(struct ghosts *g);
+/* Room for n of them. */
+int ghosts_reserve(struct ghosts *g, size_t n, struct error *e);
 /* Into a checkpoint or out of it: of the ghosts of n real particles. */
 int ghosts_store(struct ghosts *g, struct store *s, size_t n, struct error *e);
 
@@ -62,6 +64,17 @@ int ghosts_make(struct ghosts *g, const struct box *box, struct particles *p, do
 /* Whether the domain is so wide along an axis; `name` is the array's, for the sentence. */
 int sides_check_width(const struct box *box, int axis, double margin, const char *name,
                       struct error *e);
+
+/* An image's code: two bits an axis, IMAGE_LOW: below the low side, IMAGE_HIGH: above the high one. */
+#define IMAGE_LOW 1u
+#define IMAGE_HIGH 2u
+/* Whether there is one across that side of an axis. */
+bool sides_has_image(const struct box *box, int axis, unsigned image);
+/* A coordinate as it is there. */
+double sides_image(const struct box *box, int axis, unsigned image, double x);
+/* Component k of a real column's value as it is in an image with that code. */
+double sides_value(const struct box *box, int dim, const struct column *c, uint32_t k,
+                   unsigned code, double value);
 
 /* Copies column `c` from parents to ghosts; x is shifted or reflected, vectors and tensors are
  * reflected across mirrors. */

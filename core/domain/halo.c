@@ -1,0 +1,499 @@
+/* domain/halo.c -- who needs whom (see halo.h); what is then sent is halo_columns.c's. */
+#include "domain/halo.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define TILES 96 /* boxes by which a rank tells where an array's destinations stand */
+#define BLOCK 64 /* sources that are looked at together */
+#define SLACK 1.005
+
+/* A box, and how far what is in it reaches. Without anything in it lo is above hi. */
+struct tile {
+    double lo[3], hi[3], reach;
+};
+
+/* -- Opened and closed -------- */
+
+int halo_open(struct halo *h, struct wire *w, size_t n_array, struct error *e)
+{
+    *h = (struct halo){.wire = w, .n_array = n_array};
+    h->image = calloc(n_array + 1, sizeof *h->image);
+    h->n_ghost = calloc(2 * n_array + 1, sizeof *h->n_ghost);
+    if (!h->image || !h->n_ghost)
+        return error_memory(e, "the domain", n_array);
+    h->image_capacity = h->n_ghost + n_array;
+    return 0;
+}
+
+static void peers_drop(struct halo *h)
+{
+    for (size_t k = 0; k < h->n_peer; k++) {
+        struct halo_peer *q = &h->peer[k];
+        for (size_t a = 0; q->part && a < h->n_array; a++) {
+            free(q->part[a].send);
+            free(q->part[a].image);
+        }
+        free(q->part);
+        free(q->out);
+        free(q->in);
+    }
+    h->n_peer = 0;
+}
+
+void halo_close(struct halo *h)
+{
+    peers_drop(h);
+    for (size_t a = 0; h->image && a < h->n_array; a++)
+        free(h->image[a]);
+    free(h->image);
+    free(h->n_ghost);
+    free(h->peer);
+    free(h->parcel);
+    *h = (struct halo){0};
+}
+
+static int peer_add(struct halo *h, int rank, struct error *e)
+{
+    if (h->n_peer == h->peer_capacity) {
+        const size_t capacity = 2 * h->peer_capacity + 8;
+        struct halo_peer *peer = realloc(h->peer, capacity * sizeof *peer);
+        if (!peer)
+            return error_memory(e, "the domain", capacity * sizeof *peer);
+        h->peer = peer;
+        struct parcel *parcel = realloc(h->parcel, 2 * capacity * sizeof *parcel);
+        if (!parcel)
+            return error_memory(e, "the domain", 2 * capacity * sizeof *parcel);
+        h->parcel = parcel;
+        h->peer_capacity = capacity;
+    }
+    h->peer[h->n_peer] =
+        (struct halo_peer){.rank = rank, .part = calloc(h->n_array + 1, sizeof(struct halo_part))};
+    return h->peer[h->n_peer++].part ? 0 : error_memory(e, "the domain", h->n_array);
+}
+
+/* -- Boxes -------- */
+
+static struct tile tile_of(const struct cloud *c, size_t first, size_t end, double factor)
+{
+    struct tile t = {.reach = 0.0};
+    for (int a = 0; a < 3; a++) {
+        t.lo[a] = a < c->dim ? INFINITY : 0.0;
+        t.hi[a] = a < c->dim ? -INFINITY : 0.0;
+    }
+    for (size_t i = first; i < end; i++) {
+        const double reach = factor * c->scale * c->h[i];
+        t.reach = reach > t.reach ? reach : t.reach;
+        for (int a = 0; a < c->dim; a++) {
+            t.lo[a] = c->x[a][i] < t.lo[a] ? c->x[a][i] : t.lo[a];
+            t.hi[a] = c->x[a][i] > t.hi[a] ? c->x[a][i] : t.hi[a];
+        }
+    }
+    return t;
+}
+
+static size_t share_of(size_t n)
+{
+    const size_t each = (n + TILES - 1) / TILES;
+    return each < BLOCK ? BLOCK : (each + 7) / 8 * 8;
+}
+
+static size_t tiles_of(size_t n)
+{
+    return (n + share_of(n) - 1) / share_of(n);
+}
+
+/* As an image of a box. */
+static struct tile tile_image(const struct box *box, struct tile t, unsigned code)
+{
+    for (int a = 0; a < box->dim; a++) {
+        const unsigned image = code >> 2 * a & 3u;
+        if (!image || !(t.lo[a] <= t.hi[a]))
+            continue;
+        const double p = sides_image(box, a, image, t.lo[a]),
+                     q = sides_image(box, a, image, t.hi[a]);
+        t.lo[a] = fmin(p, q);
+        t.hi[a] = fmax(p, q);
+    }
+    return t;
+}
+
+/* Whether sources in a box may be within reach of destinations in another. */
+static bool near(const struct tile *src, const struct tile *dst, bool symmetric)
+{
+    const double reach = symmetric ? fmax(src->reach, dst->reach) : dst->reach;
+    double gap2 = 0.0;
+    for (int a = 0; a < 3; a++) {
+        const double gap = fmax(0.0, fmax(dst->lo[a] - src->hi[a], src->lo[a] - dst->hi[a]));
+        gap2 += gap * gap;
+    }
+    return gap2 <= reach * reach; /* of empty ones gaps are infinite */
+}
+
+/* All codes of images that there are, 0 first; how many: 27 at most. */
+static size_t codes_of(const struct box *box, unsigned code[27])
+{
+    size_t n = 1;
+    code[0] = 0;
+    for (int a = 0; box->bounded && a < box->dim; a++) {
+        const size_t before = n;
+        for (unsigned image = IMAGE_LOW; image <= IMAGE_HIGH; image++)
+            for (size_t k = 0; sides_has_image(box, a, image) && k < before; k++)
+                code[n++] = code[k] | image << 2 * a;
+    }
+    return n;
+}
+
+/* -- Making -------- */
+
+struct making {
+    struct halo *h;
+    const struct halo_job *job;
+    unsigned code[27];
+    size_t n_code, n_cloud;
+    struct tile *whole;   /* [rank * n_cloud + cloud]: all of a rank's */
+    uint64_t *n_particle; /* [rank * n_cloud + cloud] */
+    /* Of the peer at hand. */
+    struct tile *tile; /* of each of its clouds one after the other */
+    size_t *first;     /* [n_cloud + 1] */
+};
+
+static const struct cloud *cloud_at(const struct making *m, size_t frame, size_t array)
+{
+    return &m->job->cloud[frame * m->job->n_array + array];
+}
+
+/* Whether `holder` may have sources for destinations of `seeker`. */
+static bool ranks_near(const struct making *m, int holder, int seeker)
+{
+    for (size_t k = 0; k < m->job->n_want; k++) {
+        const struct halo_want *w = &m->job->want[k];
+        const size_t at = w->frame * m->job->n_array;
+        const struct tile *dst = &m->whole[(size_t)seeker * m->n_cloud + at + w->dst];
+        const struct tile src = m->whole[(size_t)holder * m->n_cloud + at + w->src];
+        for (size_t c = holder == seeker; c < (w->frame ? 1 : m->n_code); c++) {
+            const struct tile image = tile_image(m->job->box, src, m->code[c]);
+            if (near(&image, dst, w->symmetric))
+                return true;
+        }
+    }
+    return false;
+}
+
+/* What all ranks know of each other. */
+static int introduce(struct making *m, struct error *e)
+{
+    struct wire *w = m->h->wire;
+    const size_t ranks = (size_t)wire_size(w), n = m->n_cloud;
+    struct mine {
+        struct tile tile;
+        uint64_t n;
+    } *mine = calloc(n * (ranks + 1), sizeof *mine), *all = mine + n;
+    m->whole = malloc(ranks * n * sizeof *m->whole + 1);
+    m->n_particle = malloc(ranks * n * sizeof *m->n_particle + 1);
+    if (!mine || !m->whole || !m->n_particle) {
+        free(mine);
+        return error_memory(e, "the domain", ranks * n * sizeof *mine);
+    }
+    for (size_t k = 0; k < n; k++) {
+        const struct cloud *c = &m->job->cloud[k];
+        mine[k].tile = tile_of(c, 0, c->n, m->job->factor * SLACK);
+        mine[k].n = c->n;
+    }
+    const int status = wire_gather(w, mine, n * sizeof *mine, all, e);
+    for (size_t k = 0; !status && k < ranks * n; k++) {
+        m->whole[k] = all[k].tile;
+        m->n_particle[k] = all[k].n;
+    }
+    if (!status)
+        free(mine);
+    return status;
+}
+
+/* -- Who is needed -------- */
+
+static int part_add(struct halo_part *p, size_t i, unsigned code, struct error *e)
+{
+    if (p->n_send == p->send_capacity) {
+        const size_t capacity = 2 * p->send_capacity + 256;
+        uint32_t *send = realloc(p->send, capacity * sizeof *send);
+        p->send = send ? send : p->send;
+        uint8_t *image = realloc(p->image, capacity);
+        p->image = image ? image : p->image;
+        if (!send || !image)
+            return error_memory(e, "ghosts", capacity * sizeof *send);
+        p->send_capacity = capacity;
+    }
+    p->send[p->n_send] = (uint32_t)i;
+    p->image[p->n_send++] = (uint8_t)code;
+    return 0;
+}
+
+/* Boxes of the peer that some of a block of sources may be near. */
+struct candidates {
+    const struct tile **tile;
+    const struct halo_want **want;
+    size_t n;
+};
+
+static bool wanted(const struct making *m, const struct candidates *c, size_t i, unsigned code)
+{
+    for (size_t k = 0; k < c->n; k++) {
+        const struct halo_want *w = c->want[k];
+        const struct cloud *at = cloud_at(m, w->frame, w->src);
+        struct tile point = tile_of(at, i, i + 1, m->job->factor * SLACK);
+        point = code ? tile_image(m->job->box, point, code) : point;
+        if (near(&point, c->tile[k], w->symmetric))
+            return true;
+    }
+    return false;
+}
+
+/* Of a block of an array's sources, as one image: those that the peer needs. */
+static int look_at_block(const struct making *m, struct halo_part *part, size_t array, size_t first,
+                         size_t end, unsigned code, struct candidates *c, struct error *e)
+{
+    c->n = 0;
+    for (size_t k = 0; k < m->job->n_want; k++) {
+        const struct halo_want *w = &m->job->want[k];
+        const struct cloud *src = cloud_at(m, w->frame, w->src);
+        const size_t dst = w->frame * m->job->n_array + w->dst;
+        if (w->src != array || (w->frame && code) || src->n == 0)
+            continue;
+        struct tile block = tile_of(src, first, end, m->job->factor * SLACK);
+        block = code ? tile_image(m->job->box, block, code) : block;
+        for (size_t t = m->first[dst]; t < m->first[dst + 1]; t++)
+            if (near(&block, &m->tile[t], w->symmetric)) {
+                c->tile[c->n] = &m->tile[t];
+                c->want[c->n++] = w;
+            }
+    }
+    for (size_t i = first; c->n && i < end; i++)
+        if (wanted(m, c, i, code) && part_add(part, i, code, e))
+            return -1;
+    return 0;
+}
+
+static int look_for_peer(const struct making *m, struct halo_peer *q, struct error *e)
+{
+    const size_t most = m->first[m->n_cloud] * m->job->n_want + 1;
+    const bool self = q->rank == wire_rank(m->h->wire);
+    struct candidates c = {.tile = malloc(most * sizeof *c.tile),
+                           .want = malloc(most * sizeof *c.want)};
+    int status = c.tile && c.want ? 0 : error_memory(e, "the domain", most * sizeof *c.tile);
+    for (size_t a = 0; !status && a < m->job->n_array; a++) {
+        size_t n = 0;
+        for (size_t f = 0; f < m->job->n_frame; f++)
+            n = cloud_at(m, f, a)->n > n ? cloud_at(m, f, a)->n : n;
+        for (size_t first = 0; !status && first < n; first += BLOCK)
+            for (size_t k = self; !status && k < m->n_code; k++)
+                status = look_at_block(m, &q->part[a], a, first,
+                                       first + BLOCK < n ? first + BLOCK : n, m->code[k], &c, e);
+    }
+    free(c.tile);
+    free(c.want);
+    return status;
+}
+
+/* -- Peers -------- */
+
+/* Tiles of a rank's clouds: where each begins. */
+static void lay_tiles(const struct making *m, int rank, size_t *first)
+{
+    first[0] = 0;
+    for (size_t k = 0; k < m->n_cloud; k++)
+        first[k + 1] = first[k] + tiles_of(m->n_particle[(size_t)rank * m->n_cloud + k]);
+}
+
+static void fill_tiles(const struct making *m, const size_t *first, struct tile *tile)
+{
+    for (size_t k = 0; k < m->n_cloud; k++) {
+        const struct cloud *c = &m->job->cloud[k];
+        const size_t share = share_of(c->n);
+        for (size_t t = first[k]; t < first[k + 1]; t++) {
+            const size_t begin = (t - first[k]) * share;
+            tile[t] = tile_of(c, begin, begin + share < c->n ? begin + share : c->n,
+                              m->job->factor * SLACK);
+        }
+    }
+}
+
+static int find_peers(struct making *m, struct error *e)
+{
+    struct halo *h = m->h;
+    const int me = wire_rank(h->wire), ranks = wire_size(h->wire);
+    peers_drop(h);
+    for (int r = 0; r < ranks; r++)
+        if ((ranks_near(m, me, r) || ranks_near(m, r, me)) && peer_add(h, r, e))
+            return -1;
+    return 0;
+}
+
+/* Each peer's tiles, where this rank may hold sources for it: tile[k], in memory of its own. */
+static int trade_tiles(struct making *m, struct tile **tile, struct error *e)
+{
+    struct halo *h = m->h;
+    const int me = wire_rank(h->wire);
+    size_t n_send = 0, n_receive = 0;
+    struct parcel *receive = h->parcel + h->n_peer;
+    struct tile *mine = NULL;
+    lay_tiles(m, me, m->first);
+    const size_t n_mine = m->first[m->n_cloud];
+    mine = malloc((n_mine + 1) * sizeof *mine);
+    if (!mine)
+        return error_memory(e, "the domain", n_mine * sizeof *mine);
+    fill_tiles(m, m->first, mine);
+    for (size_t k = 0; k < h->n_peer; k++) {
+        const int r = h->peer[k].rank;
+        if (r != me && ranks_near(m, r, me))
+            h->parcel[n_send++] = (struct parcel){r, mine, n_mine * sizeof *mine};
+        if (!ranks_near(m, me, r))
+            continue;
+        lay_tiles(m, r, m->first);
+        const size_t n = m->first[m->n_cloud];
+        tile[k] = malloc((n + 1) * sizeof **tile);
+        if (!tile[k])
+            return error_memory(e, "the domain", n * sizeof **tile);
+        if (r == me)
+            memcpy(tile[k], mine, n * sizeof **tile);
+        else
+            receive[n_receive++] = (struct parcel){r, tile[k], n * sizeof **tile};
+    }
+    if (wire_begin(h->wire, h->parcel, n_send, receive, n_receive, e) || wire_finish(h->wire, e))
+        return -1;
+    free(mine);
+    return 0;
+}
+
+static int look(struct making *m, struct error *e)
+{
+    struct halo *h = m->h;
+    struct tile **tile = calloc(h->n_peer + 1, sizeof *tile);
+    int status = tile ? trade_tiles(m, tile, e) : error_memory(e, "the domain", h->n_peer);
+    for (size_t k = 0; !status && k < h->n_peer; k++) {
+        if (!tile[k])
+            continue;
+        m->tile = tile[k];
+        lay_tiles(m, h->peer[k].rank, m->first);
+        status = look_for_peer(m, &h->peer[k], e);
+    }
+    for (size_t k = 0; tile && !status && k < h->n_peer; k++)
+        free(tile[k]);
+    if (!status)
+        free(tile);
+    return status;
+}
+
+/* -- What comes of it -------- */
+
+/* This rank's own images leave the peers. */
+static int take_own(struct halo *h, struct ghosts *own, struct error *e)
+{
+    for (size_t a = 0; a < h->n_array; a++)
+        own[a].n = 0;
+    for (size_t k = 0; k < h->n_peer; k++) {
+        struct halo_peer *q = &h->peer[k];
+        if (q->rank != wire_rank(h->wire))
+            continue;
+        for (size_t a = 0; a < h->n_array; a++) {
+            const struct halo_part *p = &q->part[a];
+            if (ghosts_reserve(&own[a], p->n_send, e))
+                return -1;
+            own[a].n = p->n_send;
+            if (p->n_send) {
+                memcpy(own[a].parent, p->send, p->n_send * sizeof *p->send);
+                memcpy(own[a].image, p->image, p->n_send);
+            }
+            free(p->send);
+            free(p->image);
+        }
+        free(q->part);
+        memmove(q, q + 1, (h->n_peer - k - 1) * sizeof *q);
+        h->n_peer--;
+        break;
+    }
+    return 0;
+}
+
+/* How many of each array come from whom. */
+static int trade_counts(struct halo *h, struct error *e)
+{
+    const size_t n = h->n_array;
+    uint64_t *count = malloc((2 * h->n_peer * n + 1) * sizeof *count);
+    struct parcel *receive = h->parcel + h->n_peer;
+    if (!count)
+        return error_memory(e, "the domain", 2 * h->n_peer * n * sizeof *count);
+    for (size_t k = 0; k < h->n_peer; k++) {
+        uint64_t *mine = count + 2 * k * n;
+        for (size_t a = 0; a < n; a++)
+            mine[a] = h->peer[k].part[a].n_send;
+        h->parcel[k] = (struct parcel){h->peer[k].rank, mine, n * sizeof *mine};
+        receive[k] = (struct parcel){h->peer[k].rank, mine + n, n * sizeof *mine};
+    }
+    if (wire_begin(h->wire, h->parcel, h->n_peer, receive, h->n_peer, e) || wire_finish(h->wire, e))
+        return -1;
+    for (size_t k = 0; k < h->n_peer; k++)
+        for (size_t a = 0; a < n; a++)
+            h->peer[k].part[a].n_receive = count[(2 * k + 1) * n + a];
+    free(count);
+    return 0;
+}
+
+/* Where each peer's ghosts stand; room for their codes. */
+static int lay_ghosts(struct halo *h, const struct ghosts *own, struct error *e)
+{
+    for (size_t a = 0; a < h->n_array; a++) {
+        size_t n = own[a].n;
+        for (size_t k = 0; k < h->n_peer; k++) {
+            h->peer[k].part[a].first = n;
+            n += h->peer[k].part[a].n_receive;
+        }
+        h->n_ghost[a] = n;
+        if (n > UINT32_MAX / 2)
+            return error_set(e, EXIT_RUN, "%zu ghosts on a rank: more than an array holds", n);
+        if (n > h->image_capacity[a]) {
+            uint8_t *image = realloc(h->image[a], n + n / 8);
+            if (!image)
+                return error_memory(e, "ghosts", n);
+            h->image[a] = image;
+            h->image_capacity[a] = n + n / 8;
+        }
+        if (own[a].n)
+            memcpy(h->image[a], own[a].image, own[a].n);
+    }
+    return 0;
+}
+
+/* As which images they come: an array at a time. */
+static int trade_codes(struct halo *h, struct error *e)
+{
+    struct parcel *receive = h->parcel + h->n_peer;
+    for (size_t a = 0; a < h->n_array; a++) {
+        for (size_t k = 0; k < h->n_peer; k++) {
+            struct halo_part *p = &h->peer[k].part[a];
+            h->parcel[k] = (struct parcel){h->peer[k].rank, p->image, p->n_send};
+            receive[k] = (struct parcel){h->peer[k].rank, h->image[a] + p->first, p->n_receive};
+        }
+        if (wire_begin(h->wire, h->parcel, h->n_peer, receive, h->n_peer, e) ||
+            wire_finish(h->wire, e))
+            return -1;
+    }
+    return 0;
+}
+
+int halo_make(struct halo *h, const struct halo_job *job, struct ghosts *own, struct error *e)
+{
+    struct making m = {.h = h, .job = job, .n_cloud = job->n_frame * job->n_array};
+    m.n_code = codes_of(job->box, m.code);
+    m.first = calloc(m.n_cloud + 1, sizeof *m.first);
+    int status = m.first ? 0 : error_memory(e, "the domain", m.n_cloud);
+    if (!status)
+        status = introduce(&m, e) || find_peers(&m, e) || look(&m, e) || take_own(h, own, e) ||
+                         trade_counts(h, e) || lay_ghosts(h, own, e) || trade_codes(h, e)
+                     ? -1
+                     : 0;
+    free(m.first);
+    free(m.whole);
+    free(m.n_particle);
+    return status;
+}

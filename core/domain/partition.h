@@ -1,0 +1,25 @@
+/* domain/partition.h -- which rank a place belongs to: Zoltan's recursive bisection by coordinates (RCB) or along
+ * axes of inertia (RIB), or its Hilbert curve (HSFC). Knows points and weights, nothing of particles. */
+#ifndef DOMAIN_PARTITION_H
+#define DOMAIN_PARTITION_H
+
+#include "base/error.h"
+#include <stddef.h>
+
+enum partitioner { PARTITION_RCB, PARTITION_RIB, PARTITION_HSFC, PARTITIONERS };
+/* "rcb", "rib", "hsfc". */
+extern const char *const partitioner_name[PARTITIONERS];
+
+struct partition;
+
+/* All ranks call each of these together, but for partition_owner. Among ranks that MPI has begun. */
+int partition_open(struct partition **p, enum partitioner which, int dim, struct error *e);
+void partition_close(struct partition *p);
+/* Cuts anew, for points x[axis][n] of this rank with their weights (> 0), so that all ranks have about the same.
+ * owner: int[n], or NULL: nobody asks. */
+int partition_cut(struct partition *p, const double *const *x, const float *weight, size_t n,
+                  int *owner, struct error *e);
+/* The rank of a place by the cuts there are: of any place, however far outside. */
+int partition_owner(const struct partition *p, const double *x);
+
+#endif

@@ -43,7 +43,9 @@ static const struct argp_option options[] = {
      0},
     {"dry-run", KEY_DRY, NULL, 0,
      "Do everything but the steps: check, make the particles, show the plan", 0},
-    {"strict", KEY_STRICT, NULL, 0, "Every sum in the order of the particles' ids, or exact: the same bits on any number of ranks (slower)", 0},
+    {"strict", KEY_STRICT, NULL, 0,
+     "Every sum in the order of the particles' ids, or exact: the same bits on any number of ranks (slower)",
+     0},
     {"audit", KEY_AUDIT, NULL, 0, "Prove that passes touch only what they declare (slow)", 0},
     {"quiet", KEY_QUIET, NULL, 0, "No progress, no table", 0},
     {"verbose", KEY_VERBOSE, NULL, 0, "Show the plan, and what plugins say", 0},
@@ -190,7 +192,11 @@ static int run(const struct arguments *a, struct loaded *l, const char *folder,
     if (!(end >= l->scene.time.begin))
         return error_set(e, EXIT_USAGE, "--until %g lies before the scene's begin, %g", end,
                          l->scene.time.begin);
-    if (run_check(&l->plan, a->path, a->audit, e) || output_claim(&out, folder, e))
+    int rank, ranks;
+    ranks_count(&rank, &ranks);
+    out = (struct output){.lock = -1};
+    if (run_check(&l->plan, a->path, a->audit, e) ||
+        ranks_agree(rank == 0 ? output_claim(&out, folder, e) : 0, e))
         return -1;
     signal(SIGINT, interrupt);
     signal(SIGTERM, interrupt);

@@ -137,7 +137,7 @@ int loaded_make(struct loaded *l, const struct scene_options *o, bool guarded, s
 {
     *l = (struct loaded){0};
     /* A rank that fails alone must not leave the others waiting. */
-    if (ranks_agree(load(l, o, e), e) || same_plugins(&l->registry, e) || ranks_only_one(e))
+    if (ranks_agree(load(l, o, e), e) || same_plugins(&l->registry, e))
         return -1;
     l->has_plan = true;
     return plan_make(&l->plan, &l->registry, &l->scene, guarded, e);

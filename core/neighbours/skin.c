@@ -334,11 +334,12 @@ int skin_keep(struct skin *s, const struct cloud *c, int threads, struct error *
     const struct skin_calls *calls = calls_best();
     size_t columns = (size_t)c->dim + 1;
     struct range h = range_of(c->h, c->n, threads);
-    bool even = !(h.least < h.most);
+    bool even = !(h.least < h.most), exactly = s->exactly;
 
     if (s->dim != c->dim || s->even != even) {
         skin_fini(s);
     }
+    s->exactly = exactly;
     (void)threads;
     s->even = even;
     s->dim = c->dim;
@@ -351,6 +352,10 @@ int skin_keep(struct skin *s, const struct cloud *c, int threads, struct error *
 #pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
     for (size_t b = 0; b < s->n_block; b++) {
         calls->measure(&s->block[b], c, b * BLOCK, smaller(BLOCK, c->n - b * BLOCK));
+        if (exactly) {
+            s->block[b].exact = 0;
+            s->block[b].lost = 0;
+        }
     }
     if (reserve_exact(s, e) != 0) {
         s->n = SIZE_MAX;

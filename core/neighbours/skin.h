@@ -17,6 +17,8 @@ struct skin_block;
 struct skin {
     int dim;
     bool even; /* all h were the same, and are not kept one by one */
+    bool
+        exactly; /* set by who owns it: nothing is rounded, so that changes are those of the particles alone */
     size_t n, n_block, n_exact;
     struct skin_block *block;
     uint16_t *code; /* [n_block][dim, and 1 unless even][64]: positions and h */

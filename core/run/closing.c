@@ -79,7 +79,8 @@ int closing_begin(struct closing *c, struct run *r, const struct pass *p, size_t
     /* Ghosts take the values that sweeps are to see, before they are corrected. */
     for (size_t k = 0; k < c->n_corrected; k++) {
         const struct plan_array *a = &r->plan->array[p->dst.array];
-        run_refresh(r, p->dst.array, (int)(c->part[k].y - a->p.column));
+        if (run_refresh(r, p->dst.array, (int)(c->part[k].y - a->p.column), e))
+            return -1;
     }
     return 0;
 }

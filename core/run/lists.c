@@ -1,6 +1,7 @@
 /* run/lists.c -- neighbour lists and ghosts of a run: made when they are no longer right, reused until then.
  * Everything is decided by displacements and counters, never by time, so that a run repeats itself. */
 #include "run/device.h"
+#include "run/domain.h"
 #include "run/frames.h"
 #include "run/watch.h"
 
@@ -30,6 +31,11 @@ static struct cloud cloud_of(const struct run *r, size_t array, size_t frame, bo
     for (int c = 0; c < r->plan->dim; c++)
         cloud.x[c] = plane_of(a, frame_place(r, frame, array), c);
     return cloud;
+}
+
+struct cloud run_cloud(const struct run *r, size_t array, size_t frame)
+{
+    return cloud_of(r, array, frame, false);
 }
 
 /* Whoever makes lists and ghosts wants h in doubles. Where it is held in floats, which is where nothing
@@ -141,7 +147,7 @@ static struct skin_change change_in_quanta(const struct run *r, size_t array)
     return (struct skin_change){moved + none, room};
 }
 
-static bool holds(const struct run *r, size_t frame)
+static int holds(const struct run *r, size_t frame, bool *yes, struct error *e)
 {
     const struct skin *kept = r->kept + frame * r->plan->n_array;
     struct skin_change all = {0.0, INFINITY};
@@ -156,12 +162,17 @@ static bool holds(const struct run *r, size_t frame)
         kept++;
         all = skin_both(all, here);
     }
-    return skin_holds(all);
+    if (run_share_change(r, &all, e))
+        return -1;
+    *yes = skin_holds(all);
+    return 0;
 }
 
 static int keep_places(struct run *r, size_t frame, struct error *e)
 {
     const size_t n = clouds_of(r, frame, r->cloud);
+    for (size_t k = 0; k < n; k++)
+        r->kept[frame * r->plan->n_array + k].exactly = r->plan->strict;
     for (size_t k = 0; !r->plan->frame[frame].frozen && k < n; k++)
         if (skin_keep(&r->kept[frame * r->plan->n_array + k], &r->cloud[k], r->threads, e))
             return -1;
@@ -210,36 +221,64 @@ static double largest_overshoot(const struct run *r)
     return most;
 }
 
-static void find_range_of_h(struct run *r)
+static int find_range_of_h(struct run *r, struct error *e)
 {
+    static const uint32_t op[2] = {SPH_REDUCE_MIN, SPH_REDUCE_MAX};
     for (size_t a = 0; a < r->plan->n_array; a++) {
         const struct plan_array *pa = &r->plan->array[a];
         const struct range h = range_of(cloud_of(r, a, 0, false).h, pa->p.n, r->threads);
-        r->h_low[a] = h.least;
-        r->h_high[a] = fmax(h.most, 0.0);
+        double of_all[2] = {h.least, fmax(h.most, 0.0)};
+        if (run_share_numbers(r, of_all, op, 2, e))
+            return -1;
+        r->h_low[a] = of_all[0];
+        r->h_high[a] = of_all[1];
     }
+    return 0;
+}
+
+/* How far beyond a side ghosts are looked for. */
+static int find_margin(struct run *r, double *margin, struct error *e)
+{
+    static const uint32_t op = SPH_REDUCE_MAX;
+    double h = 0.0, out = largest_overshoot(r);
+    for (size_t a = 0; a < r->plan->n_array; a++)
+        h = fmax(h, r->h_high[a]);
+    if (run_share_numbers(r, &out, &op, 1, e))
+        return -1;
+    *margin = h * frame_support(r->plan) * (1.0 + r->skin) + out;
+    return watch_reach(r, *margin, e);
+}
+
+/* On one rank. */
+static int make_images(struct run *r, double margin, struct error *e)
+{
+    for (size_t a = 0; a < r->plan->n_array; a++) {
+        struct particles *p = &r->plan->array[a].p;
+        if (particles_resize(p, p->n, 0, e) ||
+            ghosts_make(&r->ghosts[a], &r->plan->scene->box, p, margin, e))
+            return -1;
+    }
+    return 0;
 }
 
 static int make_ghosts(struct run *r, struct error *e)
 {
-    double margin = 0.0;
-    for (size_t a = 0; a < r->plan->n_array; a++)
-        margin = fmax(margin, r->h_high[a]);
-    margin = margin * frame_support(r->plan) * (1.0 + r->skin) + largest_overshoot(r);
-    if (watch_reach(r, margin, e))
+    double margin;
+    if (find_margin(r, &margin, e))
         return -1;
+    for (size_t a = 0; r->domain && a < r->plan->n_array; a++)
+        for (int c = 0; c < r->plan->dim; c++)
+            if (sides_check_width(&r->plan->scene->box, c, margin, r->plan->array[a].p.name, e))
+                return watch_no_ghosts(r, e);
+    if (r->domain ? run_domain_ghosts(r, e) : make_images(r, margin, e))
+        return watch_no_ghosts(r, e);
     for (size_t a = 0; a < r->plan->n_array; a++) {
-        struct particles *p = &r->plan->array[a].p;
-        if (particles_resize(p, p->n, 0, e))
-            return -1;
-        if (ghosts_make(&r->ghosts[a], &r->plan->scene->box, p, margin, e))
-            return watch_no_ghosts(r, e);
-        for (size_t c = 0; c < p->n_column; c++)
+        for (size_t c = 0; c < r->plan->array[a].p.n_column; c++)
             run_changed(r, a, (int)c);
         r->stale[a][r->plan->array[a].position] = false;
         r->stale[a][r->plan->array[a].smoothing] = false;
     }
-    return run_mirror_frame(r, e);
+    return run_mirror_frame(r, margin, e);
 }
 
 /* -- Lists -------------------------------------------------------------------------------------- */
@@ -273,9 +312,10 @@ static int make_visits(struct run *r, struct error *e)
 {
     for (size_t a = 0; r->plan->strict && a < r->plan->n_array; a++) {
         const struct plan_array *pa = &r->plan->array[a];
-        run_refresh(r, a, pa->id);
-        if (visits_make(&r->visits[a], pa->p.column[pa->id].data, r->ghosts[a].image, pa->p.n,
-                        pa->p.n_ghost, r->threads, e))
+        const uint8_t *image = r->domain ? r->domain->halo.image[a] : r->ghosts[a].image;
+        if (run_refresh(r, a, pa->id, e) ||
+            visits_make(&r->visits[a], pa->p.column[pa->id].data, image, pa->p.n, pa->p.n_ghost,
+                        r->threads, e))
             return -1;
     }
     return 0;
@@ -296,8 +336,7 @@ static int make_lists(struct run *r, bool sorted, struct error *e)
 {
     if (widen_h(r, e)) /* they stand in another order now */
         return -1;
-    find_range_of_h(r);
-    if (make_ghosts(r, e) || widen_h(r, e) || make_visits(r, e))
+    if (find_range_of_h(r, e) || make_ghosts(r, e) || widen_h(r, e) || make_visits(r, e))
         return -1;
     if (sorted || !r->lists_made)
         memset(r->frame_made, false, r->plan->n_frame);
@@ -326,7 +365,10 @@ int run_frame(struct run *r, size_t frame, struct error *e)
 {
     const bool frozen = r->plan->frame[frame].frozen;
     const double begin = omp_get_wtime();
-    if (frame == 0 || (r->frame_made[frame] && (frozen || holds(r, frame))))
+    bool made = frame == 0 || (r->frame_made[frame] && frozen);
+    if (!made && r->frame_made[frame] && holds(r, frame, &made, e))
+        return -1;
+    if (made)
         return 0;
     if (frozen && !r->frozen[frame])
         freeze(r, frame);
@@ -345,8 +387,9 @@ int run_lists(struct run *r, bool within, struct error *e)
         return 0;
     }
     double begin = omp_get_wtime();
-    int status = 0;
-    if (!r->lists_made || !holds(r, 0)) {
+    bool made = false;
+    int status = r->lists_made ? holds(r, 0, &made, e) : 0;
+    if (!status && !made) {
         bool sort = !within && (!r->lists_made || ++r->builds_since_sort >= BUILDS_PER_SORT);
         status = watch_places(r, true, e);
         if (!status)
@@ -355,7 +398,7 @@ int run_lists(struct run *r, bool within, struct error *e)
             for (size_t a = 0; a < r->plan->n_array; a++)
                 sides_wrap(&r->plan->scene->box, &r->plan->array[a].p);
             if (sort)
-                status = widen_h(r, e);
+                status = run_domain_move(r, e) || widen_h(r, e);
             for (size_t a = 0; !status && sort && a < r->plan->n_array; a++)
                 status = sort_array(r, a, e);
             if (sort) {
@@ -377,14 +420,22 @@ int run_lists(struct run *r, bool within, struct error *e)
     return status;
 }
 
-void run_refresh(struct run *r, size_t array, int column)
+int run_refresh_own(struct run *r, size_t array, int column, struct error *e)
 {
     if (!r->stale[array][column])
-        return;
+        return 0;
     double begin = omp_get_wtime();
     ghosts_refresh(&r->ghosts[array], &r->plan->scene->box, &r->plan->array[array].p, column);
     r->stale[array][column] = false;
     r->cost.neighbour += omp_get_wtime() - begin;
+    return run_domain_ask(r, array, column, e);
+}
+
+int run_refresh(struct run *r, size_t array, int column, struct error *e)
+{
+    return run_refresh_own(r, array, column, e) || run_domain_begin(r, e) || run_domain_finish(r, e)
+               ? -1
+               : 0;
 }
 
 struct run_memory run_memory(const struct run *r)

@@ -1,4 +1,5 @@
 /* run/loop.c -- the step loop: choose dt, advance, log, snapshot; then the summary. */
+#include "run/domain.h"
 #include "run/loop_state.h"
 #include "run/watch.h"
 #include <cjson/cJSON.h>
@@ -46,6 +47,18 @@ static double target(const struct loop *l)
 #define GROWTH 1.2
 #define FIRST 0.1
 
+/* What ranks may see differently, and at different times. */
+static int share(struct loop *l, struct error *e)
+{
+    static const uint32_t op[2] = {SPH_REDUCE_MIN, SPH_REDUCE_MAX};
+    double value[2] = {l->run.proposed, l->options->stop && *l->options->stop ? 1.0 : 0.0};
+    if (run_share_numbers(&l->run, value, op, 2, e))
+        return -1;
+    l->run.proposed = value[0];
+    l->stopped = value[1] > 0.0;
+    return 0;
+}
+
 /* Full steps until near the target, then the rest in one or two equal steps: never a sliver. */
 static int choose_dt(struct loop *l, double *dt, struct error *e)
 {
@@ -56,6 +69,8 @@ static int choose_dt(struct loop *l, double *dt, struct error *e)
     if (isnan(full))
         return watch_fail(r, &(struct sign){.cause = WATCH_NOT_FINITE}, e,
                           "the time step is no longer a number");
+    if (share(l, e))
+        return -1;
     full = fmin(fmin(full, l->scene->time.dt_max), r->proposed);
     r->proposed = INFINITY;
     /* Later on nothing may be left that bounds it, as when the last particle has gone: it grows on. */
@@ -76,7 +91,7 @@ static int choose_dt(struct loop *l, double *dt, struct error *e)
 static bool finished(const struct loop *l)
 {
     return !(l->run.time < l->end) || l->run.step >= l->max_steps ||
-           (l->options->stop && *l->options->stop);
+           (l->run.domain ? l->stopped : l->options->stop && *l->options->stop);
 }
 
 /* "every" takes the place of "steps", whose default stands beside it. */
@@ -125,7 +140,7 @@ static int after_step(struct loop *l, struct error *e)
                           "the energy is no longer a number");
     if (logged && (watch_energy(r, &l->first, &l->last, e) || loop_log(l, e)))
         return -1;
-    if (!last && measures_due(&l->measures) &&
+    if (!last && !r->domain && measures_due(&l->measures) &&
         (run_look(r, e) || measures_take(&l->measures, MEASURES_ON_THE_WAY, e)))
         return -1;
     watch_step(r);
@@ -154,7 +169,8 @@ static int start(struct loop *l, struct error *e)
     l->ended = finished(l);
     if (run_fetch(r, e))
         return -1;
-    return loop_log(l, e) || loop_snapshot(l, e) || measures_take(&l->measures, MEASURES_START, e)
+    return loop_log(l, e) || loop_snapshot(l, e) ||
+                   (!r->domain && measures_take(&l->measures, MEASURES_START, e))
                ? -1
                : 0;
 }
@@ -186,7 +202,7 @@ static int steps(struct loop *l, struct error *e)
     }
     if (run_fetch(r, e))
         return -1;
-    if (measures_take(&l->measures, MEASURES_END, e))
+    if (!r->domain && measures_take(&l->measures, MEASURES_END, e))
         return -1;
     r->cost.loop = loop_seconds(l);
     return loop_snapshot(l, e);
@@ -205,9 +221,15 @@ static int loop_begin(struct loop *l, struct plan *plan, struct error *e)
     l->checkpointed = UINT64_MAX;
     l->refused =
         run_init(&l->run, plan, l->options->threads, l->options->path, l->options->audit, e) ||
-        (l->options->resume ? loop_resume(l, e) : output_clear(l->out, e));
+        (l->options->resume    ? loop_resume(l, e)
+         : run_speaks(&l->run) ? output_clear(l->out, e)
+                               : 0);
     if (l->refused)
         return -1;
+    progress_start(&l->progress, l->options->progress && run_speaks(&l->run), l->begin, l->end);
+    l->progress.started -= omp_get_wtime() - l->started; /* a run that goes on has begun earlier */
+    if (!run_speaks(&l->run))
+        return 0;
     char *path = output_path(l->out, "log.csv");
     int status = !path                ? error_memory(e, "a path", 1)
                  : l->options->resume ? log_append(&l->log, path, plan->dim, e)
@@ -215,8 +237,6 @@ static int loop_begin(struct loop *l, struct plan *plan, struct error *e)
     free(path);
     if (!status)
         status = measures_open(&l->measures, &l->run, l->out, l->options->resume != NULL, e);
-    progress_start(&l->progress, l->options->progress, l->begin, l->end);
-    l->progress.started -= omp_get_wtime() - l->started; /* a run that goes on has begun earlier */
     return status;
 }
 
@@ -256,16 +276,17 @@ int loop_run(struct plan *plan, const struct output *out, const struct loop_opti
     int status = loop_begin(&l, plan, e);
     if (!status)
         status = steps(&l, e);
+    status = run_domain_agree(&l.run, status, e);
     progress_end(&l.progress);
     if (!status)
         status = log_close(&l.log, e);
     if (!status)
         status = measures_close(&l.measures, e);
     if (!status)
-        status = loop_draw(&l, e);
-    if (!status)
+        status = run_speaks(&l.run) ? loop_draw(&l, e) : 0;
+    if (!status && run_speaks(&l.run))
         status = loop_summarise(&l, o->stop && *o->stop ? "stopped" : "done", NULL, e);
-    else if (l.run.plan && !l.refused) {
+    else if (status && l.run.plan && !l.refused && !l.run.domain) {
         tell_device(&l, e);
         keep_failed(&l, e);
     }

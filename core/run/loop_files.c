@@ -2,6 +2,7 @@
 #include "base/text.h"
 #include "config.h"
 #include "io/snapshot.h"
+#include "run/domain.h"
 #include "run/loop_state.h"
 #include <omp.h>
 #include <stdlib.h>
@@ -25,6 +26,8 @@ int loop_log(struct loop *l, struct error *e)
 {
     const struct run *r = &l->run;
     size_t n = r->plan->n_reduction;
+    if (!run_speaks(r))
+        return 0;
     const char **name = calloc(n + 1, sizeof *name);
     double *value = calloc(n + 1, sizeof *value);
     if (!name || !value) {
@@ -63,12 +66,14 @@ int loop_snapshot(struct loop *l, struct error *e)
     char name[64];
     snprintf(name, sizeof name, "snapshot_%04llu.vtkhdf", (unsigned long long)l->snapshots);
     struct particles *all = calloc(plan->n_array, sizeof *all);
-    char *temporary = output_begin(l->out, name);
+    char *temporary = run_speaks(&l->run) ? output_begin(l->out, name) : strdup("");
     int status = all && temporary ? 0 : error_memory(e, "a snapshot", plan->n_array * sizeof *all);
     if (!status)
         status = run_look(&l->run, e);
-    if (!status) {
-        for (size_t a = 0; a < plan->n_array; a++)
+    if (!status && l->run.domain)
+        status = run_domain_collect(&l->run, all, e);
+    if (!status && run_speaks(&l->run)) {
+        for (size_t a = 0; !l->run.domain && a < plan->n_array; a++)
             all[a] = plan->array[a].p;
         struct snapshot_meta meta = {.scene_path = l->options->scene_path,
                                      .scene_text = l->scene_text,
@@ -80,8 +85,10 @@ int loop_snapshot(struct loop *l, struct error *e)
         status = snapshot_write(temporary, all, plan->n_array, &meta, e);
         if (!status)
             status = output_commit(l->out, temporary, name, e);
-        l->snapshots += !status;
     }
+    l->snapshots += !status;
+    if (all && l->run.domain)
+        run_domain_scatter(&l->run, all);
     free(all);
     free(temporary);
     l->run.cost.io += omp_get_wtime() - t;

@@ -23,6 +23,7 @@ struct loop {
     uint64_t max_steps, snapshots, next_output;
     double next_log;
     double loop_begun, loop_io; /* what cost.loop is measured from: the clock, and cost.io then */
+    bool stopped;               /* some rank has been asked to stop */
     bool ended;   /* by what was known after the last step: a signal may come at any time */
     bool refused; /* nothing was begun: nothing is to be kept of it */
     uint64_t checkpointed; /* the step of the last checkpoint; UINT64_MAX: none yet */

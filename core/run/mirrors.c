@@ -3,7 +3,7 @@
  * taken. Made when a sweep reads them and their column has changed. Only of what must be in doubles all
  * the time (plan/precision.c): two floats, or quanta and a rest, need no mirror. */
 #include "base/clones.h"
-#include "run/run.h"
+#include "run/domain.h"
 #include <math.h>
 #include <omp.h>
 
@@ -62,8 +62,11 @@ int run_mirror(struct run *r, size_t array, int column, struct error *e)
     return 0;
 }
 
-int run_mirror_frame(struct run *r, struct error *e)
+int run_mirror_frame(struct run *r, double margin, struct error *e)
 {
+    static const uint32_t op[6] = {SPH_REDUCE_MIN, SPH_REDUCE_MIN, SPH_REDUCE_MIN,
+                                   SPH_REDUCE_MAX, SPH_REDUCE_MAX, SPH_REDUCE_MAX};
+    const struct box *box = &r->plan->scene->box;
     const struct plan *plan = r->plan;
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (int c = 0; c < plan->dim; c++)
@@ -71,12 +74,22 @@ int run_mirror_frame(struct run *r, struct error *e)
             const struct plan_array *pa = &plan->array[a];
             const struct column *x = &pa->p.column[pa->position];
             const double *at = (const double *)x->data + (size_t)c * x->plane;
-            for (size_t i = 0; i < pa->p.n + pa->p.n_ghost; i++) {
+            for (size_t i = 0; i < pa->p.n; i++) {
                 low[c] = at[i] < low[c] ? at[i] : low[c];
                 high[c] = at[i] > high[c] ? at[i] : high[c];
             }
         }
-    return run_mirror_frame_of(r, low, high, e);
+    double of_all[6] = {low[0], low[1], low[2], high[0], high[1], high[2]};
+    if (run_share_numbers(r, of_all, op, 6, e))
+        return -1;
+    /* Images stand beyond the sides, no further than they are looked for. */
+    for (int c = 0; c < plan->dim; c++) {
+        if (box->bounded && sides_has_image(box, c, IMAGE_LOW))
+            of_all[c] = fmin(of_all[c], box->min[c] - margin);
+        if (box->bounded && sides_has_image(box, c, IMAGE_HIGH))
+            of_all[3 + c] = fmax(of_all[3 + c], box->max[c] + margin);
+    }
+    return run_mirror_frame_of(r, of_all, of_all + 3, e);
 }
 
 int run_mirror_frame_of(struct run *r, const double *low, const double *high, struct error *e)

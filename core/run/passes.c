@@ -3,6 +3,7 @@
 #include "run/chunks.h"
 #include "run/closing.h"
 #include "run/device.h"
+#include "run/domain.h"
 #include "run/watch.h"
 #include <math.h>
 #include <omp.h>
@@ -77,30 +78,39 @@ sph_batch run_batch(const struct run *r, const struct use *u, const sph_column *
     return b;
 }
 
-/* Everything that the sweeps read is right: ghosts hold their parents' values, mirrors the columns'. */
-static int refresh(struct run *r, const struct pass *p, const struct binding *b, bool source,
-                   struct error *e)
+/* The k-th column of an array that the pass's sweeps read: its own, then places and h; -1: none. */
+static int swept(const struct run *r, const struct pass *p, const struct binding *b, uint32_t k)
 {
     const struct plan_array *a = &r->plan->array[b->array];
     const uint32_t n = p->use.item->props.count;
-    for (uint32_t k = 0; k < n + 2; k++) {
-        const int column = k == n ? a->position : k > n ? a->smoothing : b->column[k];
-        if (column < 0)
-            continue;
-        if (source)
-            run_refresh(r, b->array, column);
-        if (p->real == SPH_F32 && run_mirror(r, b->array, column, e))
+    return k == n ? a->position : k > n ? a->smoothing : b->column[k];
+}
+
+static int mirror(struct run *r, const struct pass *p, const struct binding *b, struct error *e)
+{
+    const uint32_t n = p->use.item->props.count + 2;
+    for (uint32_t k = 0; p->real == SPH_F32 && k < n; k++)
+        if (swept(r, p, b, k) >= 0 && run_mirror(r, b->array, swept(r, p, b, k), e))
             return -1;
-    }
     return 0;
 }
 
+/* Everything that the sweeps read is right: ghosts hold their parents' values, mirrors the columns'. */
 static int refresh_all(struct run *r, const struct pass *p, struct error *e)
 {
+    const uint32_t n = p->use.item->props.count + 2;
     for (size_t s = 0; s < p->n_src; s++)
-        if (refresh(r, p, &p->src[s], true, e))
+        for (uint32_t k = 0; k < n; k++) {
+            const int column = swept(r, p, &p->src[s], k);
+            if (column >= 0 && run_refresh_own(r, p->src[s].array, column, e))
+                return -1;
+        }
+    if (run_domain_begin(r, e) || run_domain_finish(r, e))
+        return -1;
+    for (size_t s = 0; s < p->n_src; s++)
+        if (mirror(r, p, &p->src[s], e))
             return -1;
-    return refresh(r, p, &p->dst, false, e);
+    return mirror(r, p, &p->dst, e);
 }
 
 /* What the pass has written is old in ghosts and mirrors; a changed h or place makes the lists suspect. */
@@ -156,7 +166,8 @@ static int run_pass(struct run *r, struct pass *p, struct error *e)
     int status = chunks_prepare(r, p, e);
     if (!status)
         status = ranges_all(&ranges, particles->n, e);
-    for (uint32_t k = 0; !status && ranges.n; k++) {
+    uint64_t wanted = particles->n > 0 || r->domain;
+    for (uint32_t k = 0; !status && wanted; k++) {
         status = sweep(r, p, &ranges, e);
         if (status)
             break;
@@ -164,6 +175,11 @@ static int run_pass(struct run *r, struct pass *p, struct error *e)
         if (!p->max_sweeps)
             break;
         status = ranges_unfinished(&ranges, particles->column[p->unfinished].data, particles->n, e);
+        wanted = ranges.n;
+        if (status || run_share_count(r, &wanted, e)) {
+            status = -1;
+            break;
+        }
         if (k + 1 >= p->max_sweeps) {
             r->cost.unfinished += ranges.n;
             break;
@@ -181,14 +197,19 @@ static int run_pass(struct run *r, struct pass *p, struct error *e)
 
 /* Right after its pass, but for what that has reduced itself: later steps, and other functions, see what it
  * came to. */
-static void reduce_pass(struct run *r, size_t pass)
+static int reduce_pass(struct run *r, size_t pass, struct error *e)
 {
     const struct pass *p = &r->plan->pass[pass];
     for (size_t i = 0; i < r->plan->n_reduction; i++) {
         const struct reduction *d = &r->plan->reduction[i];
-        if (d->pass == pass && !(closing_reduces(p, d) && r->plan->array[d->array].p.n > 0))
-            r->reduced[i] = run_reduce(r, d);
+        if (d->pass != pass)
+            continue;
+        const bool done = closing_reduces(p, d) && r->plan->array[d->array].p.n > 0;
+        if (done ? run_share_numbers(r, &r->reduced[i], &d->declared->op, 1, e)
+                 : run_reduce(r, d, &r->reduced[i], e))
+            return -1;
     }
+    return 0;
 }
 
 void run_bound_dt(struct run *r)
@@ -216,7 +237,8 @@ int run_passes(struct run *r, enum moment moment, struct error *e)
             continue;
         if (run_pass(r, &r->plan->pass[i], e))
             return -1;
-        reduce_pass(r, i);
+        if (reduce_pass(r, i, e))
+            return -1;
     }
     if (moment != MOMENT_EVALUATE)
         return 0;

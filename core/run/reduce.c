@@ -2,7 +2,7 @@
  * blocks in order, so that it is the same for any number of threads. */
 #include "base/clones.h"
 #include "base/exact_sum.h"
-#include "run/run.h"
+#include "run/domain.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -78,17 +78,21 @@ double reduce_range(const struct column *value, const struct column *mass, uint3
     return out;
 }
 
-static double exact(const struct column *value, const struct column *mass, size_t n)
+static int exact(const struct run *r, const struct column *value, const struct column *mass,
+                 size_t n, double *out, struct error *e)
 {
     struct exact_sum sum = {0};
     for (size_t i = 0; i < n; i++) {
         const double of = column_get(value, 0, i);
         exact_add(&sum, mass ? column_get(mass, 0, i) * of : of);
     }
-    return exact_value(&sum);
+    if (run_share_exact(r, &sum, 1, e))
+        return -1;
+    *out = exact_value(&sum);
+    return 0;
 }
 
-double run_reduce(const struct run *r, const struct reduction *d)
+int run_reduce(const struct run *r, const struct reduction *d, double *out, struct error *e)
 {
     const struct plan_array *a = &r->plan->array[d->array];
     const uint32_t use = d->declared->use, op = d->declared->op;
@@ -97,9 +101,9 @@ double run_reduce(const struct run *r, const struct reduction *d)
                         *mass = weighted ? &a->p.column[a->mass] : NULL;
     const long blocks = (long)((a->p.n + BLOCK - 1) / BLOCK);
     if (r->plan->strict && op == SPH_REDUCE_SUM)
-        return exact(value, mass, a->p.n);
+        return exact(r, value, mass, a->p.n, out, e);
     double *part = malloc(((size_t)blocks + 1) * sizeof *part);
-    double out = reduce_range(value, mass, op, 0, 0);
+    double all = reduce_range(value, mass, op, 0, 0);
 #pragma omp parallel for schedule(static) num_threads(r->threads) if (part && blocks > 4)
     for (long k = 0; k < (part ? blocks : 0); k++) {
         const size_t end = ((size_t)k + 1) * BLOCK;
@@ -107,10 +111,11 @@ double run_reduce(const struct run *r, const struct reduction *d)
     }
     for (long k = 0; k < blocks; k++) {
         const size_t first = (size_t)k * BLOCK, end = first + BLOCK;
-        out = reduction_merge(
-            op, out,
+        all = reduction_merge(
+            op, all,
             part ? part[k] : reduce_range(value, mass, op, first, end < a->p.n ? end : a->p.n));
     }
     free(part);
-    return out;
+    *out = all;
+    return run_share_numbers(r, out, &op, 1, e);
 }

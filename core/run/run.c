@@ -1,5 +1,6 @@
 /* run/run.c -- makes and frees a run's working memory. */
 #include "run/device.h"
+#include "run/domain.h"
 #include "run/watch.h"
 #include <math.h>
 #include <stdlib.h>
@@ -94,7 +95,7 @@ int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool 
             return error_memory(e, "the run", columns);
         memset(r->mirror_old[a], MIRROR_OLD, columns);
     }
-    if (hold(plan, e) || watch_open(r, e))
+    if (run_domain_open(r, e) || hold(plan, e) || watch_open(r, e))
         return -1;
     if (run_check(plan, path, audit, e) || (plan->on_device && run_device_open(r, e)))
         return -1;
@@ -117,6 +118,7 @@ void run_free(struct run *r)
     audit_close(r);
     watch_close(r);
     run_device_close(r);
+    run_domain_close(r);
     for (size_t a = 0; a < n; a++) {
         if (r->ghosts)
             ghosts_fini(&r->ghosts[a]);

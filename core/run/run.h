@@ -14,6 +14,7 @@
 struct audit;
 struct watch;
 struct run_device;
+struct run_domain;
 
 /* Sums over all real particles. */
 struct totals {
@@ -61,6 +62,7 @@ struct run {
     double proposed;      /* bound on the next dt, cfl not applied; INFINITY: none */
     struct run_cost cost;
     struct run_device *device; /* device.h; NULL: on the processor */
+    struct run_domain *domain; /* domain.h; NULL: on one rank */
     struct audit *audit;       /* NULL: off */
     struct watch *watch;       /* watch.h */
     bool look;                 /* all that passes write in this step is looked at: finite.c */
@@ -101,11 +103,15 @@ int run_frame(struct run *r, size_t frame, struct error *e);
 struct skin_change run_change(const struct run *r, size_t array, size_t first, size_t n,
                               const double *const *x);
 /* Ghosts of this column get their parents' values, if they hold old ones. */
-void run_refresh(struct run *r, size_t array, int column);
+int run_refresh(struct run *r, size_t array, int column, struct error *e);
+/* The same, but for what comes from other ranks: that is asked for, and comes with run_domain_begin. */
+int run_refresh_own(struct run *r, size_t array, int column, struct error *e);
+/* The places of an array's real particles in a frame. */
+struct cloud run_cloud(const struct run *r, size_t array, size_t frame);
 /* A column was written: what copies it is old. */
 static inline void run_changed(struct run *r, size_t array, int column)
 {
-    r->stale[array][column] = r->plan->array[array].p.n_ghost > 0;
+    r->stale[array][column] = r->domain || r->plan->array[array].p.n_ghost > 0;
     r->mirror_old[array][column] = MIRROR_OLD;
     if (column == r->plan->array[array].position || column == r->plan->array[array].smoothing)
         r->has_change[array] = false;
@@ -123,7 +129,7 @@ struct run_memory run_memory(const struct run *r);
 int run_mirror(struct run *r, size_t array, int column, struct error *e);
 /* mirrors.c: the frame of positions' mirrors, for the places that all arrays have now; fails where
  * floats would not tell particles apart. */
-int run_mirror_frame(struct run *r, struct error *e);
+int run_mirror_frame(struct run *r, double margin, struct error *e);
 
 /* The same for places between low and high, of real particles and ghosts. */
 int run_mirror_frame_of(struct run *r, const double *low, const double *high, struct error *e);
@@ -131,8 +137,8 @@ int run_mirror_frame_of(struct run *r, const double *low, const double *high, st
 /* mirrors.c: of n positions' component k from `first` on; false: some have no place in the frame. */
 bool mirror_places(const struct run *r, const struct column *c, uint32_t k, size_t first, size_t n);
 
-/* reduce.c: a reduction of its column as it is now. */
-double run_reduce(const struct run *r, const struct reduction *d);
+/* reduce.c: a reduction of its column as it is now, over all ranks. */
+int run_reduce(const struct run *r, const struct reduction *d, double *out, struct error *e);
 /* reduce.c: over particles [first, end); mass NULL: not weighted. */
 double reduce_range(const struct column *value, const struct column *mass, uint32_t op,
                     size_t first, size_t end);

@@ -2,6 +2,7 @@
  * bits for any number of threads. Where the order of sums is strict they are exact. */
 #include "base/exact_sum.h"
 #include "run/device.h"
+#include "run/domain.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -113,17 +114,25 @@ static void add_exactly(const struct plan_array *a, struct exact_sum sum[SUMS])
     }
 }
 
-static void sum_all(const struct run *r, double sum[SUMS])
+static int sum_all(const struct run *r, double sum[SUMS], struct error *e)
 {
     struct exact_sum exact[SUMS] = {{.digit = {0}}};
+    uint32_t op[SUMS];
+    for (int k = 0; k < SUMS; k++)
+        op[k] = SPH_REDUCE_SUM;
     for (size_t a = 0; a < r->plan->n_array; a++) {
         if (r->plan->strict)
             add_exactly(&r->plan->array[a], exact);
         else
             add_array(r, &r->plan->array[a], sum);
     }
-    for (int k = 0; r->plan->strict && k < SUMS; k++)
+    if (!r->plan->strict)
+        return run_share_numbers(r, sum, op, SUMS, e);
+    if (run_share_exact(r, exact, SUMS, e))
+        return -1;
+    for (int k = 0; k < SUMS; k++)
         sum[k] = exact_value(&exact[k]);
+    return 0;
 }
 
 int run_totals(struct run *r, struct totals *t, struct error *e)
@@ -132,7 +141,8 @@ int run_totals(struct run *r, struct totals *t, struct error *e)
     *t = (struct totals){0};
     if (r->device)
         return run_device_totals(r, t, e);
-    sum_all(r, sum);
+    if (sum_all(r, sum, e))
+        return -1;
     t->mass = sum[MASS];
     t->kinetic = sum[KINETIC];
     t->momentum_scale = sum[MOMENTUM_SCALE];
@@ -145,7 +155,10 @@ int run_totals(struct run *r, struct totals *t, struct error *e)
         if (!of)
             continue;
         /* Anew, and not what the pass came to: the integrator has advanced it since. */
-        *of += run_reduce(r, d);
+        double here;
+        if (run_reduce(r, d, &here, e))
+            return -1;
+        *of += here;
         t->has_energy = true;
     }
     return 0;

@@ -1,0 +1,312 @@
+/* run/domain.c -- see run/domain.h. */
+#include "run/domain.h"
+#include "domain/migrate.h"
+#include "domain/ranks.h"
+#include "run/frames.h"
+#include <stdlib.h>
+#include <string.h>
+
+static int shared(struct run_domain **out, const struct plan *plan, struct error *e)
+{
+    struct run_domain *d = *out = calloc(1, sizeof *d);
+    const size_t n = plan->n_array;
+    if (!d)
+        return error_memory(e, "the domain", sizeof *d);
+    d->want = calloc(plan->n_list + 1, sizeof *d->want);
+    d->cloud = calloc(plan->n_frame * n + 1, sizeof *d->cloud);
+    if (!d->want || !d->cloud)
+        return error_memory(e, "the domain", n * plan->n_frame * sizeof *d->cloud);
+    for (size_t k = 0; k < plan->n_list; k++) {
+        const struct plan_list *l = &plan->list[k];
+        d->want[d->n_want++] =
+            (struct halo_want){l->dst, l->src, l->frame, l->reach == SPH_SYMMETRIC};
+    }
+    return 0;
+}
+
+/* -- Cuts -------- */
+
+static void place_of(const struct plan_array *a, int dim, size_t i, double x[3])
+{
+    for (int c = 0; c < dim; c++)
+        x[c] = column_get(&a->p.column[a->position], (uint32_t)c, i);
+}
+
+/* Cuts, by every size-th of all particles, which every rank has. */
+static int cut_first(struct run *r, struct error *e)
+{
+    const struct plan *plan = r->plan;
+    const size_t ranks = (size_t)wire_size(r->domain->wire),
+                 me = (size_t)wire_rank(r->domain->wire);
+    size_t n = 0, k = 0;
+    for (size_t a = 0; a < plan->n_array; a++)
+        n += plan->array[a].p.n;
+    double *x = malloc((3 * (n / ranks + 1)) * sizeof *x);
+    float *weight = malloc((n / ranks + 1) * sizeof *weight);
+    if (!x || !weight) {
+        free(x);
+        free(weight);
+        return error_memory(e, "the domain", n * sizeof *x);
+    }
+    double *const at[3] = {x, x + n / ranks + 1, x + 2 * (n / ranks + 1)};
+    n = 0;
+    for (size_t a = 0; a < plan->n_array; a++)
+        for (size_t i = 0; i < plan->array[a].p.n; i++) {
+            double here[3];
+            if (k++ % ranks != me)
+                continue;
+            place_of(&plan->array[a], plan->dim, i, here);
+            for (int c = 0; c < plan->dim; c++)
+                at[c][n] = here[c];
+            weight[n++] = 1.0f;
+        }
+    const int status =
+        partition_cut(r->domain->partition, (const double *const *)at, weight, n, NULL, e);
+    free(x);
+    free(weight);
+    return status;
+}
+
+static int keep_own(struct run *r, struct error *e)
+{
+    const struct plan *plan = r->plan;
+    const int me = wire_rank(r->domain->wire);
+    for (size_t a = 0; a < plan->n_array; a++) {
+        struct plan_array *pa = &plan->array[a];
+        uint32_t *index = malloc((pa->p.n + 1) * sizeof *index);
+        size_t n = 0;
+        if (!index)
+            return error_memory(e, "the domain", pa->p.n * sizeof *index);
+        for (size_t i = 0; i < pa->p.n; i++) {
+            double x[3];
+            place_of(pa, plan->dim, i, x);
+            if (partition_owner(r->domain->partition, x) == me)
+                index[n++] = (uint32_t)i;
+        }
+        const int status = particles_gather(&pa->p, index, n, e);
+        free(index);
+        if (status)
+            return -1;
+    }
+    return 0;
+}
+
+int run_domain_open(struct run *r, struct error *e)
+{
+    struct wire *wire;
+    if (wire_open(&wire, e) || wire_size(wire) == 1) {
+        const int status = wire && wire_size(wire) == 1 ? 0 : -1;
+        wire_close(wire);
+        return status;
+    }
+    const int status = shared(&r->domain, r->plan, e);
+    if (r->domain)
+        r->domain->wire = wire;
+    else
+        wire_close(wire);
+    if (status || halo_open(&r->domain->halo, wire, r->plan->n_array, e) ||
+        partition_open(&r->domain->partition, PARTITION_RCB, r->plan->dim, e))
+        return -1;
+    return cut_first(r, e) || keep_own(r, e) ? -1 : 0;
+}
+
+void run_domain_close(struct run *r)
+{
+    struct run_domain *d = r->domain;
+    if (!d)
+        return;
+    partition_close(d->partition);
+    halo_close(&d->halo);
+    wire_close(d->wire);
+    free(d->want);
+    free(d->cloud);
+    free(d->column);
+    free(d->owner);
+    free(d);
+    r->domain = NULL;
+}
+
+int run_domain_move(struct run *r, struct error *e)
+{
+    struct run_domain *d = r->domain;
+    for (size_t a = 0; d && a < r->plan->n_array; a++) {
+        struct plan_array *pa = &r->plan->array[a];
+        size_t sent;
+        if (pa->p.n > d->owner_capacity) {
+            free(d->owner);
+            d->owner = malloc((pa->p.n + pa->p.n / 8) * sizeof *d->owner);
+            d->owner_capacity = d->owner ? pa->p.n + pa->p.n / 8 : 0;
+            if (!d->owner)
+                return error_memory(e, "the domain", pa->p.n * sizeof *d->owner);
+        }
+        for (size_t i = 0; i < pa->p.n; i++) {
+            double x[3];
+            place_of(pa, r->plan->dim, i, x);
+            d->owner[i] = partition_owner(d->partition, x);
+        }
+        if (migrate(d->wire, &pa->p, d->owner, &sent, e))
+            return -1;
+        d->moved += sent;
+    }
+    return 0;
+}
+
+/* -- Ghosts -------- */
+
+int run_domain_ghosts(struct run *r, struct error *e)
+{
+    struct run_domain *d = r->domain;
+    const struct plan *plan = r->plan;
+    const size_t n = plan->n_array;
+    for (size_t f = 0; f < plan->n_frame; f++)
+        for (size_t a = 0; a < n; a++)
+            d->cloud[f * n + a] =
+                frame_has(r, f, a) ? run_cloud(r, a, f) : (struct cloud){.dim = plan->dim};
+    const struct halo_job job = {.box = &plan->scene->box,
+                                 .n_array = n,
+                                 .n_frame = plan->n_frame,
+                                 .cloud = d->cloud,
+                                 .want = d->want,
+                                 .n_want = d->n_want,
+                                 .factor = 1.0 + r->skin};
+    if (halo_make(&d->halo, &job, r->ghosts, e))
+        return -1;
+    for (size_t a = 0; a < n; a++) {
+        struct plan_array *pa = &plan->array[a];
+        if (particles_resize(&pa->p, pa->p.n, d->halo.n_ghost[a], e))
+            return -1;
+        const int column[2] = {pa->position, pa->smoothing};
+        for (int k = 0; k < 2; k++) {
+            ghosts_refresh(&r->ghosts[a], &plan->scene->box, &pa->p, column[k]);
+            if (run_domain_ask(r, a, column[k], e))
+                return -1;
+        }
+    }
+    return run_domain_begin(r, e) || run_domain_finish(r, e) ? -1 : 0;
+}
+
+int run_domain_ask(struct run *r, size_t array, int column, struct error *e)
+{
+    struct run_domain *d = r->domain;
+    if (!d)
+        return 0;
+    struct halo_column *more = realloc(d->column, (d->n_column + 1) * sizeof *more);
+    if (!more)
+        return error_memory(e, "the domain", d->n_column * sizeof *more);
+    d->column = more;
+    d->column[d->n_column++] = (struct halo_column){&r->plan->array[array].p, array, column};
+    return 0;
+}
+
+int run_domain_begin(struct run *r, struct error *e)
+{
+    struct run_domain *d = r->domain;
+    return d && d->n_column ? halo_begin(&d->halo, &r->plan->scene->box, d->column, d->n_column, e)
+                            : 0;
+}
+
+int run_domain_finish(struct run *r, struct error *e)
+{
+    struct run_domain *d = r->domain;
+    if (!d || !d->n_column)
+        return 0;
+    const int status = halo_finish(&d->halo, d->column, d->n_column, e);
+    d->n_column = 0;
+    return status;
+}
+
+/* -- Together -------- */
+
+/* As it is held, but for what is not a real particle's. */
+static int copy_of(struct particles *to, const struct particles *p, struct error *e)
+{
+    if (particles_init(to, p->name, p->dim, e))
+        return -1;
+    for (size_t k = 0; k < p->n_column; k++) {
+        const struct column *c = &p->column[k];
+        if (particles_add(to, c->name, c->unit, c->doc, c->type, e) < 0)
+            return -1;
+        to->column[k].output = c->output;
+        to->column[k].state = true; /* all of it goes along */
+    }
+    if (particles_resize(to, p->n, 0, e))
+        return -1;
+    for (size_t k = 0; k < p->n_column; k++) {
+        const struct column *c = &p->column[k];
+        for (uint32_t q = 0; q < c->ncomp; q++) {
+            char *at = (char *)to->column[k].data + q * to->column[k].plane * to->column[k].size;
+            if (column_is_real(c))
+                column_load(c, q, 0, p->n, (double *)(void *)at);
+            else
+                memcpy(at, (const char *)c->data + q * c->plane * c->size, p->n * c->size);
+        }
+    }
+    return 0;
+}
+
+int run_domain_collect(struct run *r, struct particles *all, struct error *e)
+{
+    size_t most = 1, sent;
+    for (size_t a = 0; a < r->plan->n_array; a++) {
+        const struct particles *p = &r->plan->array[a].p;
+        all[a] = (struct particles){0};
+        most = p->n > most ? p->n : most;
+    }
+    int *owner = calloc(most, sizeof *owner);
+    int status = owner ? 0 : error_memory(e, "all particles", most * sizeof *owner);
+    for (size_t a = 0; !status && a < r->plan->n_array; a++)
+        status = copy_of(&all[a], &r->plan->array[a].p, e) ||
+                         migrate(r->domain->wire, &all[a], owner, &sent, e)
+                     ? -1
+                     : 0;
+    free(owner);
+    return status;
+}
+
+void run_domain_scatter(const struct run *r, struct particles *all)
+{
+    for (size_t a = 0; a < r->plan->n_array; a++)
+        particles_fini(&all[a]);
+}
+
+bool run_speaks(const struct run *r)
+{
+    return !r->domain || wire_rank(r->domain->wire) == 0;
+}
+
+int run_domain_agree(struct run *r, int status, struct error *e)
+{
+    if (!r->domain)
+        return status;
+    if (status && e->text[0])
+        wire_alarm(r->domain->wire);
+    return ranks_agree(status, e);
+}
+
+/* -- Of all ranks -------- */
+
+int run_share_numbers(const struct run *r, double *value, const uint32_t *op, size_t n,
+                      struct error *e)
+{
+    return r->domain ? wire_reduce(r->domain->wire, value, op, n, e) : 0;
+}
+
+int run_share_change(const struct run *r, struct skin_change *c, struct error *e)
+{
+    static const uint32_t op[2] = {SPH_REDUCE_MAX, SPH_REDUCE_MIN};
+    double value[2] = {c->moved, c->room};
+    if (run_share_numbers(r, value, op, 2, e))
+        return -1;
+    *c = (struct skin_change){value[0], value[1]};
+    return 0;
+}
+
+int run_share_count(const struct run *r, uint64_t *n, struct error *e)
+{
+    return r->domain ? wire_sum(r->domain->wire, n, 1, e) : 0;
+}
+
+int run_share_exact(const struct run *r, struct exact_sum *sum, size_t n, struct error *e)
+{
+    return r->domain ? wire_exact(r->domain->wire, sum, n, e) : 0;
+}

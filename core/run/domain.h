@@ -1,0 +1,59 @@
+/* run/domain.h -- a run on several ranks: who holds which particles, ghosts of others', values that all ranks share.
+ * On one rank there is none of it: r->domain is NULL, and all calls do nothing. All ranks make the same calls in
+ * the same order. */
+#ifndef RUN_DOMAIN_H
+#define RUN_DOMAIN_H
+
+#include "domain/halo.h"
+#include "domain/partition.h"
+#include "run/run.h"
+
+struct run_domain {
+    struct wire *wire;
+    struct partition *partition;
+    struct halo halo;
+    struct halo_want *want;
+    size_t n_want;
+    struct cloud *cloud; /* [frame * n_array + array] */
+    struct halo_column *column;
+    size_t n_column; /* of the exchange under way */
+    int *owner;
+    size_t owner_capacity;
+    uint64_t moved; /* particles that have left this rank */
+};
+
+static inline bool run_shared(const struct run *r)
+{
+    return r->domain != NULL;
+}
+
+/* Every rank has been given all particles: cuts the domain and keeps this rank's. */
+int run_domain_open(struct run *r, struct error *e);
+void run_domain_close(struct run *r);
+/* Particles go to where their places belong. */
+int run_domain_move(struct run *r, struct error *e);
+/* Ghosts of what this rank's lists may reach: room for them, and who they are; of their columns positions and
+ * smoothing lengths are right. */
+int run_domain_ghosts(struct run *r, struct error *e);
+/* Columns that ghosts need anew, of any arrays: asked for one by one, then exchanged at once. */
+int run_domain_ask(struct run *r, size_t array, int column, struct error *e);
+int run_domain_begin(struct run *r, struct error *e);
+int run_domain_finish(struct run *r, struct error *e);
+
+/* Copies of all arrays on rank 0, with every column; elsewhere arrays of nothing. all: [n_array], to be freed by
+ * run_domain_scatter in any case. */
+int run_domain_collect(struct run *r, struct particles *all, struct error *e);
+void run_domain_scatter(const struct run *r, struct particles *all);
+/* Whether this rank is the one that writes and talks. */
+bool run_speaks(const struct run *r);
+/* status of a whole run: others stop waiting if it is not 0, and all end alike. */
+int run_domain_agree(struct run *r, int status, struct error *e);
+
+/* Of all ranks. */
+int run_share_change(const struct run *r, struct skin_change *c, struct error *e);
+int run_share_numbers(const struct run *r, double *value, const uint32_t *op, size_t n,
+                      struct error *e);
+int run_share_exact(const struct run *r, struct exact_sum *sum, size_t n, struct error *e);
+int run_share_count(const struct run *r, uint64_t *n, struct error *e);
+
+#endif

@@ -67,7 +67,7 @@ static int set(struct partition *p, enum partitioner which)
     const char *const list[][2] = {{"DEBUG_LEVEL", "0"}, /* else it prints */
                                    {"LB_METHOD", method[which]}, {"NUM_GID_ENTRIES", "1"},
                                    {"NUM_LID_ENTRIES", "1"},     {"OBJ_WEIGHT_DIM", "1"},
-                                   {"RETURN_LISTS", "PARTS"},    {"KEEP_CUTS", "1"},
+                                   {"RETURN_LISTS", "NONE"},     {"KEEP_CUTS", "1"},
                                    {"IMBALANCE_TOL", "1.01"}};
     int status = ZOLTAN_OK;
     for (size_t k = 0; k < sizeof list / sizeof list[0] && status == ZOLTAN_OK; k++)
@@ -103,7 +103,7 @@ void partition_close(struct partition *p)
 }
 
 int partition_cut(struct partition *p, const double *const *x, const float *weight, size_t n,
-                  int *owner, struct error *e)
+                  struct error *e)
 {
     int changes, n_gid, n_lid, n_import, n_export;
     ZOLTAN_ID_PTR import_global, import_local, export_global, export_local;
@@ -116,8 +116,6 @@ int partition_cut(struct partition *p, const double *const *x, const float *weig
         &import_part, &n_export, &export_global, &export_local, &export_to, &export_part);
     if (status != ZOLTAN_OK && status != ZOLTAN_WARN)
         return error_set(e, EXIT_RUN, "Zoltan does not cut the domain (%d)", status);
-    for (int k = 0; owner && k < n_export; k++)
-        owner[export_local[k]] = export_to[k];
     Zoltan_LB_Free_Part(&import_global, &import_local, &import_from, &import_part);
     Zoltan_LB_Free_Part(&export_global, &export_local, &export_to, &export_part);
     return 0;
@@ -150,13 +148,12 @@ void partition_close(struct partition *p)
 }
 
 int partition_cut(struct partition *p, const double *const *x, const float *weight, size_t n,
-                  int *owner, struct error *e)
+                  struct error *e)
 {
     (void)p;
     (void)x;
     (void)weight;
     (void)n;
-    (void)owner;
     return error_set(e, EXIT_USAGE, "built without Zoltan: one rank only");
 }
 

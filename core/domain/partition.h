@@ -15,10 +15,9 @@ struct partition;
 /* All ranks call each of these together, but for partition_owner. Among ranks that MPI has begun. */
 int partition_open(struct partition **p, enum partitioner which, int dim, struct error *e);
 void partition_close(struct partition *p);
-/* Cuts anew, for points x[axis][n] of this rank with their weights (> 0), so that all ranks have about the same.
- * owner: int[n], or NULL: nobody asks. */
+/* Cuts anew, for points x[axis][n] of this rank with their weights (> 0), so that all ranks have about the same. */
 int partition_cut(struct partition *p, const double *const *x, const float *weight, size_t n,
-                  int *owner, struct error *e);
+                  struct error *e);
 /* The rank of a place by the cuts there are: of any place, however far outside. */
 int partition_owner(const struct partition *p, const double *x);
 

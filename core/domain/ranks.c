@@ -37,20 +37,24 @@ void ranks_count(int *rank, int *size)
 
 int ranks_agree(int status, struct error *e)
 {
-    int rank, size, failed = status ? 1 : 0, number = 0, speaker = 0;
+    int rank, size;
     ranks_count(&rank, &size);
     if (size == 1)
         return status;
-    int place = failed ? rank : INT_MAX;
-    MPI_Allreduce(&failed, &number, 1, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
+    /* Some may only have heard that another has failed: they have nothing to say. */
+    const int speaks = status && e->text[0];
+    int sum[2] = {status ? 1 : 0, speaks}, number[2] = {0, 0}, speaker = 0;
+    int place = speaks ? rank : status ? size + rank : 2 * size;
+    MPI_Allreduce(sum, number, 2, MPI_INT, MPI_SUM, MPI_COMM_WORLD);
     MPI_Allreduce(&place, &speaker, 1, MPI_INT, MPI_MIN, MPI_COMM_WORLD);
-    if (number == 0)
+    if (number[0] == 0)
         return 0;
+    speaker %= size;
     int code = e->exit_code;
     MPI_Bcast(&code, 1, MPI_INT, speaker, MPI_COMM_WORLD);
     if (rank != speaker)
         *e = (struct error){code, ""};
-    else if (number < size)
+    else if (number[1] < size && e->text[0])
         error_prefix(e, "rank %d", rank); /* what all ranks meet needs no name */
     return -1;
 }

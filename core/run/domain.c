@@ -60,8 +60,7 @@ static int cut_first(struct run *r, struct error *e)
                 at[c][n] = here[c];
             weight[n++] = 1.0f;
         }
-    const int status =
-        partition_cut(r->domain->partition, (const double *const *)at, weight, n, NULL, e);
+    const int status = partition_cut(r->domain->partition, (const double *const *)at, weight, n, e);
     free(x);
     free(weight);
     return status;

@@ -104,7 +104,8 @@ int run_domain_open(struct run *r, struct error *e)
     else
         wire_close(wire);
     if (status || halo_open(&r->domain->halo, wire, r->plan->n_array, e) ||
-        partition_open(&r->domain->partition, PARTITION_RCB, r->plan->dim, e))
+        partition_open(&r->domain->partition, (enum partitioner)r->plan->scene->ranks.partition,
+                       r->plan->dim, e))
         return -1;
     return cut_first(r, e) || keep_own(r, e) ? -1 : 0;
 }
@@ -121,23 +122,122 @@ void run_domain_close(struct run *r)
     free(d->cloud);
     free(d->column);
     free(d->owner);
+    free(d->weight);
+    free(d->place);
     free(d);
     r->domain = NULL;
+}
+
+/* -- Balance -------- */
+
+#define POINT 8.0f /* what a particle costs beside its pairs, in pairs */
+
+/* Sweeps of an evaluation that walk a list. */
+static size_t sweeps_of(const struct plan *plan, size_t list)
+{
+    size_t n = 0;
+    for (size_t i = 0; i < plan->n_pass; i++)
+        for (size_t s = 0; plan->pass[i].moment == MOMENT_EVALUATE && s < plan->pass[i].n_src; s++)
+            n += plan->pass[i].shape == SPH_PAIR && plan->pass[i].list[s] == list;
+    return n;
+}
+
+/* Of an array's particles, by the lists there are: a group's pairs are its particles' in equal parts. */
+static double weigh(const struct run *r, size_t array, float *weight)
+{
+    const struct plan *plan = r->plan;
+    const size_t n = plan->array[array].p.n;
+    double sum = 0.0;
+    for (size_t i = 0; i < n; i++)
+        weight[i] = POINT;
+    for (size_t k = 0; r->lists_made && k < plan->n_list; k++) {
+        const struct group_list *list = &r->list[k];
+        const double each = list->true_share * (double)sweeps_of(plan, k);
+        if (plan->list[k].dst != array)
+            continue;
+        for (size_t g = 0; g < list->n_group; g++) {
+            const size_t first = g * SPH_LANES, end = first + SPH_LANES < n ? first + SPH_LANES : n;
+            const double pairs = each * (double)group_list_entries(list, g, g + 1);
+            for (size_t i = first; i < end; i++)
+                weight[i] += (float)(pairs / (double)(end - first));
+        }
+    }
+    for (size_t i = 0; i < n; i++)
+        sum += (double)weight[i];
+    return sum;
+}
+
+/* How much more than the mean the rank with the most has. */
+static int find_imbalance(struct run *r, double mine, struct error *e)
+{
+    static const uint32_t op[2] = {SPH_REDUCE_MAX, SPH_REDUCE_SUM};
+    double value[2] = {mine, mine};
+    if (run_share_numbers(r, value, op, 2, e))
+        return -1;
+    r->domain->imbalance =
+        value[1] > 0.0 ? value[0] * (double)wire_size(r->domain->wire) / value[1] : 1.0;
+    return 0;
+}
+
+static int room_for(struct run_domain *d, size_t n, struct error *e)
+{
+    if (n <= d->capacity)
+        return 0;
+    const size_t capacity = n + n / 8 + 64;
+    free(d->owner);
+    free(d->weight);
+    free(d->place);
+    d->owner = malloc(capacity * sizeof *d->owner);
+    d->weight = malloc(capacity * sizeof *d->weight);
+    d->place = malloc(3 * capacity * sizeof *d->place);
+    d->capacity = d->owner && d->weight && d->place ? capacity : 0;
+    return d->capacity ? 0 : error_memory(e, "the domain", capacity * sizeof *d->place);
+}
+
+/* Cuts anew if the shares have come to differ too much. */
+static int balance(struct run *r, struct error *e)
+{
+    struct run_domain *d = r->domain;
+    const struct plan *plan = r->plan;
+    size_t n = 0, at = 0;
+    double sum = 0.0;
+    for (size_t a = 0; a < plan->n_array; a++)
+        n += plan->array[a].p.n;
+    if (room_for(d, n, e))
+        return -1;
+    for (size_t a = 0; a < plan->n_array; a++) {
+        sum += weigh(r, a, d->weight + at);
+        at += plan->array[a].p.n;
+    }
+    if (find_imbalance(r, sum, e))
+        return -1;
+    if (!r->lists_made || !(d->imbalance > plan->scene->ranks.imbalance))
+        return 0;
+    double *const place[3] = {d->place, d->place + d->capacity, d->place + 2 * d->capacity};
+    at = 0;
+    for (size_t a = 0; a < plan->n_array; a++)
+        for (size_t i = 0; i < plan->array[a].p.n; i++, at++) {
+            double x[3];
+            place_of(&plan->array[a], plan->dim, i, x);
+            for (int c = 0; c < plan->dim; c++)
+                place[c][at] = x[c];
+        }
+    d->cuts++;
+    return partition_cut(d->partition, (const double *const *)place, d->weight, n, e);
 }
 
 int run_domain_move(struct run *r, struct error *e)
 {
     struct run_domain *d = r->domain;
-    for (size_t a = 0; d && a < r->plan->n_array; a++) {
+    if (!d)
+        return 0;
+    if (balance(r, e))
+        return -1;
+    for (size_t a = 0; a < r->plan->n_array; a++) {
         struct plan_array *pa = &r->plan->array[a];
         size_t sent;
-        if (pa->p.n > d->owner_capacity) {
-            free(d->owner);
-            d->owner = malloc((pa->p.n + pa->p.n / 8) * sizeof *d->owner);
-            d->owner_capacity = d->owner ? pa->p.n + pa->p.n / 8 : 0;
-            if (!d->owner)
-                return error_memory(e, "the domain", pa->p.n * sizeof *d->owner);
-        }
+        if (room_for(d, pa->p.n, e))
+            return -1;
         for (size_t i = 0; i < pa->p.n; i++) {
             double x[3];
             place_of(pa, r->plan->dim, i, x);

@@ -17,9 +17,13 @@ struct run_domain {
     struct cloud *cloud; /* [frame * n_array + array] */
     struct halo_column *column;
     size_t n_column; /* of the exchange under way */
-    int *owner;
-    size_t owner_capacity;
-    uint64_t moved; /* particles that have left this rank */
+    int *owner;      /* room for as many particles as one asks for at once */
+    float *weight;
+    double *place;
+    size_t capacity;
+    double imbalance; /* of the pairs, when particles were last sorted */
+    uint64_t moved,
+        cuts; /* particles that have left this rank; how often the domain was cut anew */
 };
 
 static inline bool run_shared(const struct run *r)

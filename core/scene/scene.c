@@ -378,6 +378,27 @@ static int compile_neighbours(struct scene *s, const cJSON *node, struct error *
     return 0;
 }
 
+/* How several processes share the domain. */
+static int compile_ranks(struct scene *s, const cJSON *node, struct error *e)
+{
+    static const char *const keys[] = {"partition", "imbalance"};
+    static const char *const words[] = {"rcb", "rib", "hsfc"};
+    s->ranks.partition = 0;
+    s->ranks.imbalance = 1.05;
+    if (!node)
+        return 0;
+    if (json_keys(s->doc, node, keys, COUNT(keys), e) < 0 ||
+        scene_word(s, node, "partition", "way to cut the domain", words, COUNT(words),
+                   &s->ranks.partition, e) < 0 ||
+        json_number(s->doc, node, "imbalance", false, &s->ranks.imbalance, e) < 0)
+        return -1;
+    if (s->ranks.imbalance < 1.0)
+        return document_fail(s->doc, json_get(node, "imbalance"), e,
+                             "%.15g is no bound: the largest share is never less than the mean, 1",
+                             s->ranks.imbalance);
+    return 0;
+}
+
 static int compile_precision(struct scene *s, const cJSON *root, struct error *e)
 {
     static const char *const words[] = {"double", "mixed", "single"};
@@ -407,9 +428,10 @@ static int compile_head(struct scene *s, const cJSON *root, struct error *e)
 static int compile(struct scene *s, const cJSON *root, struct error *e)
 {
     static const char *const keys[] = {
-        "$schema",   "title",      "dimensions", "plugins",  "units",  "domain", "materials",
-        "particles", "boundaries", "scheme",     "kernel",   "time",   "limits", "neighbours",
-        "precision", "compare",    "probes",     "profiles", "output", "watch",  "functions"};
+        "$schema",   "title",      "dimensions", "plugins", "units",  "domain",
+        "materials", "particles",  "boundaries", "scheme",  "kernel", "time",
+        "limits",    "neighbours", "precision",  "compare", "probes", "profiles",
+        "output",    "watch",      "functions",  "ranks"};
     if (!root->child)
         return document_fail(s->doc, root, e, "the scene is empty");
     if (json_keys(s->doc, root, keys, COUNT(keys), e) < 0 || compile_head(s, root, e) < 0 ||
@@ -423,7 +445,8 @@ static int compile(struct scene *s, const cJSON *root, struct error *e)
         compile_kernel(s, json_get(root, "kernel"), e) < 0 ||
         scene_time(s, json_get(root, "time"), e) < 0 ||
         compile_neighbours(s, json_get(root, "neighbours"), e) < 0 ||
-        compile_precision(s, root, e) < 0 || scene_compares(s, json_get(root, "compare"), e) < 0 ||
+        compile_ranks(s, json_get(root, "ranks"), e) < 0 || compile_precision(s, root, e) < 0 ||
+        scene_compares(s, json_get(root, "compare"), e) < 0 ||
         scene_probes(s, json_get(root, "probes"), e) < 0 ||
         scene_profiles(s, json_get(root, "profiles"), e) < 0 ||
         scene_watches(s, json_get(root, "watch"), e) < 0)

@@ -251,7 +251,12 @@ struct scene {
         double skin;         /* NAN: as the plan has it */
         const char *manager; /* NULL: the plan chooses */
     } neighbours;            /* optional key "neighbours": {"skin": 0.1, "manager": "octree"} */
-    const char *precision;   /* "double", "mixed", "single"; NULL: the scheme's */
+    struct {
+        size_t partition; /* by domain/partition.h: 0 "rcb", 1 "rib", 2 "hsfc" */
+        double
+            imbalance; /* largest share of a rank over the mean, from which the domain is cut anew */
+    } ranks;           /* optional key "ranks": {"partition": "rcb", "imbalance": 1.05} */
+    const char *precision; /* "double", "mixed", "single"; NULL: the scheme's */
     /* The command line's, as `precision` may be. */
     struct {
         bool opencl; /* else the processor */

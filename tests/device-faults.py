@@ -42,7 +42,9 @@ SCENE = {
 
 
 def faulty(*faults):
-    return {**os.environ, "SPH_FAULT": ",".join(faults), "LD_PRELOAD": FAULTS}
+    # A build with the address sanitizer wants its library to come first; it need not.
+    asan = ":".join(filter(None, [os.environ.get("ASAN_OPTIONS"), "verify_asan_link_order=0"]))
+    return {**os.environ, "SPH_FAULT": ",".join(faults), "LD_PRELOAD": FAULTS, "ASAN_OPTIONS": asan}
 
 
 def part(name):

@@ -138,13 +138,12 @@ int device_search_open(struct device_search **out, struct device *d, int dim,
 
 void device_search_close(struct device_search *s)
 {
-    struct device_buffer *const all[] = {&s->survey, &s->box,    &s->copy,  &s->order, &s->key,
-                                         &s->cell,   &s->begin,  &s->total, &s->need,  &s->tables,
-                                         &s->slot,   &s->counts, &s->pairs};
-
     if (!s) {
         return;
     }
+    struct device_buffer *const all[] = {&s->survey, &s->box,    &s->copy,  &s->order, &s->key,
+                                         &s->cell,   &s->begin,  &s->total, &s->need,  &s->tables,
+                                         &s->slot,   &s->counts, &s->pairs};
     for (size_t k = 0; k < sizeof all / sizeof all[0]; k++) {
         device_release(s->d, all[k]);
     }

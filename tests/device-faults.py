@@ -22,9 +22,7 @@ FAULTS = os.path.join(BUILD, "tests/opencl/.libs/faults.so")
 ON = ("--device", "opencl", "--device-only")
 DEVICE = r'device "[^"]+" '
 
-if "No OpenCL device" in scenes.command("info", "--devices").stdout:
-    print("no OpenCL device here")
-    sys.exit(77)
+scenes.need_device()
 
 SCENE = {
     "title": "a flow between a periodic and a mirror side",

@@ -2,7 +2,6 @@
 the processor's pairs, and with the plan; the table at the end; `sph plan` with stages and kernels. Of times only what
 holds on a busy machine is asked."""
 import json
-import sys
 
 from boxes import box
 from scenes import Scenes, changed, example
@@ -11,10 +10,7 @@ scenes = Scenes()
 expect = scenes.expect
 ON = ("--device", "opencl", "--device-only")
 
-done = scenes.command("info", "--devices")
-if done.returncode or "No OpenCL device" in done.stdout:
-    print("no OpenCL device here")
-    sys.exit(77)
+scenes.need_device()
 
 noh = example("noh.json")
 noh["particles"]["fluid"]["fill"]["spacing"] = 0.02

@@ -5,8 +5,6 @@ import sys
 
 from scenes import Scenes
 
-if "No OpenCL device" in Scenes().command("info", "--devices").stdout:
-    print("no OpenCL device here")
-    sys.exit(77)
+Scenes().need_device()
 sys.argv[1:] = ["--device=opencl", "--device-only"]
 runpy.run_path(os.path.join(os.environ["top_srcdir"], "tests", "watch.py"))

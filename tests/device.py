@@ -20,10 +20,7 @@ REST = {"noh 3D", "drop", "wave", "mirror 3D", "two arrays, summed", "kernel cub
         "kernel wendland-c2", "kernel wendland-c4", "kernel wendland-c6"}
 ON = ("--device", "opencl", "--device-only")
 
-done = scenes.command("info", "--devices")
-if done.returncode or "No OpenCL device" in done.stdout:
-    print("no OpenCL device here")
-    sys.exit(77)
+scenes.need_device()
 
 
 def norm_of_difference(a, b):

@@ -104,6 +104,13 @@ class Scenes:
         options = {"capture_output": True, "text": True, "timeout": 120, **options}
         return subprocess.run([*before, SPH, *words], **options)
 
+    def need_device(self):
+        """Ends a test that is for a device where there is none, or where sph is built without OpenCL."""
+        done = self.command("info", "--devices")
+        if done.returncode or "No OpenCL device" in done.stdout:
+            print("no OpenCL device here")
+            sys.exit(77)
+
     def run(self, scene, *options, before=(), quiet=True):
         """Runs a scene (an object, or a file of examples/) into a folder of its own."""
         self.count += 1

@@ -175,6 +175,19 @@ size_t text_invalid_utf8(const char *s, size_t n)
     return (size_t)-1;
 }
 
+char *text_join(const char *const *part)
+{
+    size_t bytes = 1;
+    for (size_t k = 0; part[k]; k++)
+        bytes += strlen(part[k]);
+    char *text = malloc(bytes);
+    if (text)
+        *text = '\0';
+    for (size_t k = 0; text && part[k]; k++)
+        strcat(text, part[k]);
+    return text;
+}
+
 void text_one_line(char *s)
 {
     size_t bad;

@@ -17,6 +17,9 @@ const char *text_suggest(char *out, size_t size, const char *word, const char *c
 /* printf into fresh memory (free it); NULL when out of memory. */
 char *text_format(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
+/* Texts one after the other, up to the first NULL, likewise. */
+char *text_join(const char *const *part);
+
 /* Replaces what is no printable text, line breaks among it, by question marks. */
 void text_one_line(char *s);
 

@@ -1,5 +1,6 @@
 /* opencl/ops.c -- opens the core's own kernels on a device; columns' mirrors and order; what kernels have left
  * behind. */
+#include "base/text.h"
 #include "opencl/ops_private.h"
 
 #include <stdio.h>
@@ -27,24 +28,12 @@ static const struct {
     [K_REFRESH_NARROW] = {"refresh_narrow", "ghosts"},
 };
 
-/* A set's texts as one: what is for LANES particles once for one and once for eight. The caller frees it. */
-static char *text_of(int set)
-{
-    static const char *const part[OPS_SETS][8] = {
-        [OPS_COLUMNS] = {ops_words_text, "\n#define LANES 1\n", ops_lanes_text,
-                         "\n#undef LANES\n#define LANES 8\n", ops_lanes_text, ops_columns_text,
-                         ops_reduce_text},
-        [OPS_SIDES] = {ops_words_text, ops_sides_text}};
-    size_t bytes = 1;
-    for (size_t k = 0; part[set][k]; k++)
-        bytes += strlen(part[set][k]);
-    char *text = malloc(bytes);
-    if (text)
-        *text = '\0';
-    for (size_t k = 0; text && part[set][k]; k++)
-        strcat(text, part[set][k]);
-    return text;
-}
+/* A set's texts: what is for LANES particles once for one and once for eight. */
+static const char *const texts[OPS_SETS][8] = {
+    [OPS_COLUMNS] = {ops_words_text, "\n#define LANES 1\n", ops_lanes_text,
+                     "\n#undef LANES\n#define LANES 8\n", ops_lanes_text, ops_columns_text,
+                     ops_reduce_text},
+    [OPS_SIDES] = {ops_words_text, ops_sides_text}};
 
 int ops_build(struct ops *o, enum ops_kernel k, struct error *e)
 {
@@ -54,7 +43,7 @@ int ops_build(struct ops *o, enum ops_kernel k, struct error *e)
     char options[64], *text;
     if (o->kernel[k])
         return 0;
-    text = text_of(set);
+    text = text_join(texts[set]);
     if (!text)
         return error_memory(e, "the text of kernels", 1);
     snprintf(options, sizeof options, "-DDIM=%d -DWIDE=%zu", o->dim, o->wide);

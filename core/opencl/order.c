@@ -1,6 +1,6 @@
 /* opencl/order.c -- the order of particles on a device: cell_order and cell_best, index for index
- * (see lists.h; the kernels are order.cl and crowds.cl). What is known of all points comes back to the host,
- * which reckons the cells as it does for itself. */
+ * (see lists.h; the kernels are order.cl and crowds.cl). What is known of all points comes back to
+ * the host, which reckons the cells as it does for itself. */
 #include "config.h"
 
 #include "neighbours/edge.h"

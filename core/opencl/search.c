@@ -1,9 +1,11 @@
 /* opencl/search.c -- a device's search: its programs and rooms, what is known of clouds, and the
- * structure in which sources are sought (see search.h; the kernels are survey.cl, search.cl and own_order.cl). */
+ * structure in which sources are sought (see search.h; the kernels are survey.cl, search.cl and
+ * own_order.cl). */
 #include "config.h"
 
 #include "opencl/search.h"
 
+#include "base/text.h"
 #include "neighbours/grid.h"
 #include "neighbours/sources.h"
 #include "opencl/search_text.h"
@@ -18,10 +20,10 @@
 
 /* -- Programs -------- */
 
-/* By set: its kernels, from the first one on, what their time counts as, and its texts. */
+/* By set: its kernels, from the first to the one before `end`, and its texts. */
 static const struct {
     int first, end;
-    const char *const text[6];
+    const char *const text[7]; /* up to NULL */
 } sets[SEARCH_SETS] = {
     [SEARCH_ALL] = {K_SURVEY,
                     K_GATHER,
@@ -29,24 +31,6 @@ static const struct {
     [SEARCH_OWN_ORDER] = {K_GATHER, K_CROWDS, {points_text, own_order_text}},
     [SEARCH_CROWDS] = {K_CROWDS, SEARCH_KERNELS, {points_text, crowds_text}},
 };
-
-static char *text_of(enum search_set set)
-{
-    size_t size = 1;
-    char *text;
-
-    for (size_t k = 0; k < 6 && sets[set].text[k]; k++) {
-        size += strlen(sets[set].text[k]);
-    }
-    text = malloc(size);
-    if (text) {
-        *text = '\0';
-        for (size_t k = 0; k < 6 && sets[set].text[k]; k++) {
-            strcat(text, sets[set].text[k]);
-        }
-    }
-    return text;
-}
 
 int search_need(struct device_search *s, enum search_set set, struct error *e)
 {
@@ -62,7 +46,7 @@ int search_need(struct device_search *s, enum search_set set, struct error *e)
     if (s->program[set]) {
         return 0;
     }
-    text = text_of(set);
+    text = text_join(sets[set].text);
     if (!text) {
         return error_memory(e, "the neighbour search's program", 1);
     }
@@ -138,13 +122,12 @@ int device_search_open(struct device_search **out, struct device *d, int dim,
 
 void device_search_close(struct device_search *s)
 {
-    struct device_buffer *const all[] = {&s->survey, &s->box,    &s->copy,  &s->order, &s->key,
-                                         &s->cell,   &s->begin,  &s->total, &s->need,  &s->tables,
-                                         &s->slot,   &s->counts, &s->pairs};
-
     if (!s) {
         return;
     }
+    struct device_buffer *const all[] = {&s->survey, &s->box,    &s->copy,  &s->order, &s->key,
+                                         &s->cell,   &s->begin,  &s->total, &s->need,  &s->tables,
+                                         &s->slot,   &s->counts, &s->pairs};
     for (size_t k = 0; k < sizeof all / sizeof all[0]; k++) {
         device_release(s->d, all[k]);
     }

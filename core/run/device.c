@@ -171,23 +171,27 @@ static int column_here(struct run *r, size_t array, int column, bool source, boo
 
 /* -- A stage -------- */
 
-/* All that the columns of a binding must hold before its pass runs. */
+/* All that the columns of a binding must hold before its pass runs. Of destinations sweeps read the position alone
+ * in a mirror, of sources all that they read (kernels_sweep.c). */
 static int binding_here(struct run *r, const struct pass *p, const struct binding *b, bool source,
                         struct error *e)
 {
     const struct plan_array *a = &r->plan->array[b->array];
     const bool mirrored = p->real == SPH_F32;
 
-    for (uint32_t k = 0; k < p->use.item->props.count; k++)
-        if (column_here(r, b->array, b->column[k], source, mirrored, e))
+    for (uint32_t k = 0; k < p->use.item->props.count; k++) {
+        const sph_prop *prop = list_at(&p->use.item->props, k);
+        const bool read = source && (prop->access & SPH_SRC_READ);
+        if (column_here(r, b->array, b->column[k], source, mirrored && read, e))
             return -1;
+    }
     if (p->shape == SPH_POINT)
         return 0;
     if (p->frame && column_here(r, b->array, particles_find(&a->p, r->plan->frame[p->frame].name),
                                 source, false, e))
         return -1;
     return column_here(r, b->array, a->position, source, mirrored, e) ||
-                   column_here(r, b->array, a->smoothing, source, mirrored, e)
+                   column_here(r, b->array, a->smoothing, source, mirrored && source, e)
                ? -1
                : 0;
 }

@@ -23,22 +23,11 @@ from step_run import BUILD, Program
 PRECISIONS = ("double", "mixed")
 STEP_BAR, SWEEP_BAR = 1.4, 1.2  # times the native
 COLD_BAR, WARM_BAR = 10.0, 1.0  # seconds
-# Bars that are known to be missed, and what was measured.
-KNOWN = {
-    ("wcsph-2d", "double, whole step / native"): "1.36 to 1.41",
-    ("wcsph-2d", "mixed, whole step / native"): "1.13 to 1.51",
-    ("wcsph-2d", "mixed, pair sweeps / native"): "0.87 to 1.32",
-    ("wcsph-3d", "mixed, pair sweeps / native"): "1.14 to 1.22",
-    ("compile", "double, 5 programs, caches empty, seconds"): "12.0",
-    ("compile", "mixed, 5 programs, caches empty, seconds"): "11.8",
-}
 
 
 def say(name, what, value, bar, less=True):
     good = value <= bar if less else value >= bar
-    known = KNOWN.get((name, what))
-    print(f"  {'OK  ' if good else 'MISS'} {name}: {what} {value:.3f} ({'<=' if less else '>='} {bar:g})"
-          + (f"; known: {known}" if known and not good else ""))
+    print(f"  {'OK  ' if good else 'MISS'} {name}: {what} {value:.3f} ({'<=' if less else '>='} {bar:g})")
 
 
 # -- Beside native runs ------------------------------------------------------------------------------------

@@ -59,18 +59,6 @@ int ranks_agree(int status, struct error *e)
     return -1;
 }
 
-int ranks_only_one(struct error *e)
-{
-    int rank, size;
-    ranks_count(&rank, &size);
-    if (size == 1)
-        return 0;
-    error_set(e, EXIT_USAGE, "this version runs on one rank, not on %d; use --threads", size);
-    if (rank > 0)
-        e->text[0] = '\0'; /* the first one says it */
-    return -1;
-}
-
 void ranks_end(void)
 {
     int begun = 0, ended = 0;
@@ -100,12 +88,6 @@ int ranks_agree(int status, struct error *e)
 {
     (void)e;
     return status;
-}
-
-int ranks_only_one(struct error *e)
-{
-    (void)e;
-    return 0;
 }
 
 void ranks_end(void) {}

@@ -1,6 +1,5 @@
-/* domain/ranks.h -- MPI begun and ended, and errors that all ranks share. This version runs on
- * one rank: more are refused, by every rank, with one sentence, after they have compared their
- * plugins. Without MPI in the build there is one rank, always. */
+/* domain/ranks.h -- MPI begun and ended, and errors that all ranks share. Without MPI in the build there is one
+ * rank, always. */
 #ifndef DOMAIN_RANKS_H
 #define DOMAIN_RANKS_H
 
@@ -17,7 +16,5 @@ void ranks_count(int *rank, int *size);
  * lowest that did; that one keeps its sentence, with its rank before it unless all failed; the
  * others' text is empty. */
 int ranks_agree(int status, struct error *e);
-/* Fails (EXIT_USAGE) on more than one. */
-int ranks_only_one(struct error *e);
 
 #endif

@@ -177,8 +177,8 @@ int on_device_put(struct on_device *o, struct error *e)
         if (arena_resize(&o->arena[a], p->n, p->n_ghost, e))
             return -1;
         for (int c = 0; c < (int)p->n_column; c++) {
-            run_refresh(&o->run, a, c);
-            if (run_mirror(&o->run, a, c, e) || put_column(o, a, c, e))
+            if (run_refresh(&o->run, a, c, e) || run_mirror(&o->run, a, c, e) ||
+                put_column(o, a, c, e))
                 return -1;
         }
     }

@@ -269,7 +269,7 @@ static int make_ghosts(struct run *r, struct error *e)
     for (size_t a = 0; r->domain && a < r->plan->n_array; a++)
         for (int c = 0; c < r->plan->dim; c++)
             if (sides_check_width(&r->plan->scene->box, c, margin, r->plan->array[a].p.name, e))
-                return watch_no_ghosts(r, e);
+                return watch_too_wide(r, e);
     if (r->domain ? run_domain_ghosts(r, e) : make_images(r, margin, e))
         return watch_no_ghosts(r, e);
     for (size_t a = 0; a < r->plan->n_array; a++) {

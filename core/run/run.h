@@ -179,9 +179,9 @@ int run_look(struct run *r, struct error *e);
 int finite_pass(const struct run *r, const struct pass *p, struct error *e);
 /* ... after all passes of its moment. */
 int finite_pass_late(const struct run *r, const struct pass *p, struct error *e);
-/* After an evaluation: all rates are finite. */
+/* After an evaluation, by all ranks: all rates are finite. */
 int finite_rates(struct run *r, struct error *e);
-/* When something else is no number: the first pass of which something is. 0: there is none. */
+/* When something else is no number, by all ranks: the first pass of which something is. 0: there is none. */
 int finite_trace(const struct run *r, struct error *e);
 
 /* finite.c: the last pass of an evaluation that writes a column. */

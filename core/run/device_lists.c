@@ -133,7 +133,10 @@ static int look_for_escaped(struct run *r, struct error *e)
         for (int c = 0; c < r->plan->dim; c++)
             wrong = wrong || !(x.low[c] >= r->watch->low[c] && x.high[c] <= r->watch->high[c]);
     }
-    if (!wrong)
+    uint64_t any = wrong; /* all ranks look then: what they count they share */
+    if (run_share_count(r, &any, e))
+        return -1;
+    if (!any)
         return 0;
     return places_there(r, e) || watch_places(r, true, e) || watch_places(r, false, e) ? -1 : 0;
 }

@@ -3,6 +3,7 @@
 #include "domain/migrate.h"
 #include "domain/ranks.h"
 #include "neighbours/far.h"
+#include "run/device.h"
 #include "run/frames.h"
 #include <stdlib.h>
 #include <string.h>
@@ -151,7 +152,7 @@ static size_t sweeps_of(const struct plan *plan, size_t list)
 }
 
 /* Of an array's particles, by the lists there are: a group's pairs are its particles' in equal parts. */
-static double weigh(const struct run *r, size_t array, float *weight)
+static double weigh(struct run *r, size_t array, float *weight)
 {
     const struct plan *plan = r->plan;
     const size_t n = plan->array[array].p.n;
@@ -163,6 +164,8 @@ static double weigh(const struct run *r, size_t array, float *weight)
         const double each = list->true_share * (double)sweeps_of(plan, k);
         if (plan->list[k].dst != array)
             continue;
+        if (r->device)
+            run_device_weigh(r, k, (double)sweeps_of(plan, k), weight);
         for (size_t g = 0; g < list->n_group; g++) {
             const size_t first = g * SPH_LANES, end = first + SPH_LANES < n ? first + SPH_LANES : n;
             const double pairs = each * (double)group_list_entries(list, g, g + 1);
@@ -279,7 +282,7 @@ int run_domain_move(struct run *r, struct error *e)
 
 /* -- Ghosts -------- */
 
-int run_domain_ghosts(struct run *r, struct error *e)
+int run_domain_meet(struct run *r, struct error *e)
 {
     struct run_domain *d = r->domain;
     const struct plan *plan = r->plan;
@@ -295,7 +298,15 @@ int run_domain_ghosts(struct run *r, struct error *e)
                                  .want = d->want,
                                  .n_want = d->n_want,
                                  .factor = 1.0 + r->skin};
-    if (halo_make(&d->halo, &job, r->ghosts, e))
+    return halo_make(&d->halo, &job, r->ghosts, e);
+}
+
+int run_domain_ghosts(struct run *r, struct error *e)
+{
+    struct run_domain *d = r->domain;
+    const struct plan *plan = r->plan;
+    const size_t n = plan->n_array;
+    if (run_domain_meet(r, e))
         return -1;
     for (size_t a = 0; a < n; a++) {
         struct plan_array *pa = &plan->array[a];

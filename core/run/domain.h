@@ -45,6 +45,8 @@ int run_domain_move(struct run *r, struct error *e);
 /* Ghosts of what this rank's lists may reach: room for them, and who they are; of their columns positions and
  * smoothing lengths are right. */
 int run_domain_ghosts(struct run *r, struct error *e);
+/* The first half of it, of what the host's columns hold: who needs whom. */
+int run_domain_meet(struct run *r, struct error *e);
 /* Columns that ghosts need anew, of any arrays: asked for one by one, then exchanged at once. */
 int run_domain_ask(struct run *r, size_t array, int column, struct error *e);
 int run_domain_begin(struct run *r, struct error *e);

@@ -262,6 +262,7 @@ struct scene {
         bool opencl; /* else the processor */
         bool only;   /* no falling back to it */
         size_t number;
+        bool numbered; /* the number was given: else ranks of a machine share its devices */
     } device;
     struct scene_watch watch[WATCH_CAUSES];
     struct scene_compare *compare;

@@ -114,9 +114,8 @@ static int hear_others(const struct run *r, struct broods *b, struct error *e)
     for (size_t first = 0; !status && (double)first < most; first += PIECE) {
         for (size_t k = 0; k < PIECE; k++)
             own[k] = first + k < b->n ? b->brood[first + k] : (struct brood){0};
-        if (wire_gather(r->domain->wire, own, PIECE * sizeof *own, all, e))
-            return -1; /* somebody may still write to it */
-        for (size_t k = 0; k < ranks * PIECE; k++)
+        status = wire_gather(r->domain->wire, own, PIECE * sizeof *own, all, e);
+        for (size_t k = 0; !status && k < ranks * PIECE; k++)
             if (k / PIECE != me && all[k].n)
                 stand_before(b, &all[k]);
     }

@@ -138,7 +138,7 @@ int watch_fail(const struct run *r, const struct sign *s, struct error *e, const
     }
     add(&t, "%s step %llu, t = %g", s->array ? "" : " at", (unsigned long long)r->step, r->time);
     if (s->others)
-        add(&t, ", like %zu others", s->others);
+        add(&t, ", like %zu others%s", s->others, r->domain ? " of its rank" : "");
     if (s->array)
         add_values(&t, s);
     r->watch->failure = watch_record(r, s);

@@ -138,6 +138,7 @@ int run_mirror_frame_of(struct run *r, const double *low, const double *high, st
 bool mirror_places(const struct run *r, const struct column *c, uint32_t k, size_t first, size_t n);
 
 /* reduce.c: a reduction of its column as it is now, over all ranks. */
+bool reduced_exactly(const struct plan *plan, const struct reduction *d);
 int run_reduce(const struct run *r, const struct reduction *d, double *out, struct error *e);
 /* reduce.c: over particles [first, end); mass NULL: not weighted. */
 double reduce_range(const struct column *value, const struct column *mass, uint32_t op,

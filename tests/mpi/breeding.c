@@ -1,5 +1,6 @@
 /* breeding.c -- a function by which particles of any place are taken away, and others make one to three copies, as
- * their ids and the step say. Whoever numbers the copies in another order gets other ones from then on. */
+ * their ids and the step say. Whoever numbers the copies in another order gets other ones from then on. And one that
+ * heats by what an earlier step of the same evaluation has found as the least of all particles. */
 #include <math.h>
 #include <sph/plugin.h>
 
@@ -67,13 +68,48 @@ static const sph_population population = {
     .born_props = SPH_LIST(born_props),
 };
 
+enum { HEED_U };
+static const sph_prop heed_props[] = {
+    SPH_PROP("u", "J/kg", "specific internal energy", SPH_SCALAR, SPH_DST_UPDATE, NAN),
+};
+
+static sph_status heed(const sph_batch *b)
+{
+    const sph_reductions *reductions = b->host->extension(b->host, SPH_EXT_REDUCTIONS);
+    double *u = b->dst[HEED_U].data;
+
+    if (!reductions)
+        return b->host->fail(b->host, SPH_E_UNKNOWN, "heed needs the extension sph.reductions/0");
+    const double least = reductions->value(b, "gsph-rates", "dt");
+    for (uint64_t i = b->first; i < b->first + b->count; i++)
+        u[i] *= 1.0 + 1e-2 * least;
+    return SPH_OK;
+}
+
+static const sph_item heed_item = {
+    .size = SIZE(sph_item),
+    .dims = SPH_ALL_DIMS,
+    .name = "heed",
+    .doc = "heats by the bound of the time step",
+    .source = "breeding.c",
+    .props = SPH_LIST(heed_props),
+};
+static const sph_function heed_function = {
+    .size = SIZE(sph_function),
+    .shape = SPH_POINT,
+    .item = &heed_item,
+    .run = heed,
+    .reach_scale = 1,
+};
+
 static sph_status init(const sph_host *host)
 {
     const sph_population_ext *extension = host->extension(host, SPH_EXT_POPULATION);
 
     if (!extension)
         return host->fail(host, SPH_E_UNKNOWN, "breeding needs the extension sph.population/0");
-    if (host->register_item(host, SPH_KIND_FUNCTION, &function) != SPH_OK)
+    if (host->register_item(host, SPH_KIND_FUNCTION, &function) != SPH_OK ||
+        host->register_item(host, SPH_KIND_FUNCTION, &heed_function) != SPH_OK)
         return SPH_E_INVALID;
     return extension->declare(host, "breed", &population);
 }

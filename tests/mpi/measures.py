@@ -184,7 +184,7 @@ noh["output"] = {"every": 0.05}
 noh["compare"][0]["every"] = 0.05
 alike(changed(noh, title="noh"), (2, 3))
 
-# -- Particles are made and removed -------------------------------------------------------------------
+# -- Particles are made and removed, and heated by a minimum of the same evaluation -------------------------------------------------------------------
 
 breeding = copy.deepcopy(noh)
 breeding.update(title="breeding", compare=[], output={"every": 0.05}, plugins=[*noh["plugins"], os.path.join(MODULES, "breeding.so")])
@@ -192,9 +192,11 @@ fluid = breeding["particles"].pop("fluid")
 for name, x in (("west", -1), ("east", 0)):
     breeding["particles"][name] = {**fluid, "fill": {"lattice": "square", "spacing": 0.1,
                                                      "in": {"box": {"min": [x, -1], "max": [x + 1, 1]}}}}
-breeding["scheme"] = {"name": "gsph", "edit": [{"operation": "assignment", "function": "breed", "of": "u", "at": "finish"}]}
+breeding["scheme"] = {"name": "gsph", "edit": [
+    {"operation": "assignment", "function": "breed", "of": "u", "at": "finish"},
+    {"operation": "assignment", "function": "heed", "of": "u", "after": "gsph-rates"}]}
 breeding["time"] = {"end": 0.6, "steps": 30}
-breeding["probes"] = [{"name": "many", "array": name, "sum": "m", "steps": 1} for name in ("west",)]
+breeding["probes"] = [{"name": "many", "array": name, "sum": "u", "steps": 1} for name in ("west",)]
 one = good(breeding, 1, "--strict")
 first, last = one.snapshots()[0], one.snapshots()[-1]
 made = set(last["id"]) - set(first["id"])

@@ -266,12 +266,13 @@ static int make_ghosts(struct run *r, struct error *e)
     double margin;
     if (find_margin(r, &margin, e))
         return -1;
-    for (size_t a = 0; r->domain && a < r->plan->n_array; a++)
+    /* What else fails does not tell of h. */
+    for (size_t a = 0; a < r->plan->n_array; a++)
         for (int c = 0; c < r->plan->dim; c++)
             if (sides_check_width(&r->plan->scene->box, c, margin, r->plan->array[a].p.name, e))
                 return watch_too_wide(r, e);
     if (r->domain ? run_domain_ghosts(r, e) : make_images(r, margin, e))
-        return watch_no_ghosts(r, e);
+        return -1;
     for (size_t a = 0; a < r->plan->n_array; a++) {
         for (size_t c = 0; c < r->plan->array[a].p.n_column; c++)
             run_changed(r, a, (int)c);

@@ -276,6 +276,7 @@ static void keep_failed(struct loop *l, const struct error *e)
     struct error ignored = {0};
     bool lost;
     run_device_failed(&l->run, &lost);
+    watch_share_failure(&l->run, &ignored);
     if (lost || l->apart) {
         /* The columns here are of different times. */
     } else if (l->run.step > 0 || (l->run.watch && l->run.watch->failure.happened)) {

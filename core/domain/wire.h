@@ -22,6 +22,9 @@ int wire_rank(const struct wire *w);
 int wire_size(const struct wire *w);
 /* This rank has failed: the others stop waiting. Once is enough. */
 void wire_alarm(struct wire *w);
+/* After an alarm, when all have heard of it (ranks_agree): all ranks call it. What was under way is given up, and
+ * the wire is as new. */
+void wire_renew(struct wire *w);
 
 /* What this rank has sent to others so far: in messages, and for collective calls what it put in. Seconds: spent
  * waiting. */

@@ -43,10 +43,10 @@ static int cut_first(struct run *r, struct error *e)
         n += plan->array[a].p.n;
     double *x = malloc((3 * (n / ranks + 1)) * sizeof *x);
     float *weight = malloc((n / ranks + 1) * sizeof *weight);
-    if (!x || !weight) {
+    if (ranks_agree(x && weight ? 0 : error_memory(e, "the domain", n * sizeof *x), e)) {
         free(x);
         free(weight);
-        return error_memory(e, "the domain", n * sizeof *x);
+        return -1;
     }
     double *const at[3] = {x, x + n / ranks + 1, x + 2 * (n / ranks + 1)};
     n = 0;
@@ -98,14 +98,15 @@ int run_domain_open(struct run *r, struct error *e)
         wire_close(wire);
         return status;
     }
-    const int status = shared(&r->domain, r->plan, e);
-    if (r->domain)
-        r->domain->wire = wire;
-    else
+    if (ranks_agree(shared(&r->domain, r->plan, e), e)) {
         wire_close(wire);
-    if (status || halo_open(&r->domain->halo, wire, r->plan->n_array, e) ||
-        partition_open(&r->domain->partition, (enum partitioner)r->plan->scene->ranks.partition,
-                       r->plan->dim, e))
+        return -1;
+    }
+    r->domain->wire = wire;
+    /* What cuts the domain does not hear an alarm. */
+    const enum partitioner kind = (enum partitioner)r->plan->scene->ranks.partition;
+    if (ranks_agree(halo_open(&r->domain->halo, wire, r->plan->n_array, e), e) ||
+        ranks_agree(partition_open(&r->domain->partition, kind, r->plan->dim, e), e))
         return -1;
     return cut_first(r, e) || keep_own(r, e) ? -1 : 0;
 }
@@ -375,11 +376,13 @@ bool run_speaks(const struct run *r)
 
 int run_domain_agree(struct run *r, int status, struct error *e)
 {
-    if (!r->domain)
-        return status;
-    if (status && e->text[0])
+    if (status && e->text[0] && r->domain)
         wire_alarm(r->domain->wire);
-    return ranks_agree(status, e);
+    if (!ranks_agree(status, e))
+        return 0;
+    if (r->domain)
+        wire_renew(r->domain->wire);
+    return -1;
 }
 
 /* -- Of all ranks -------- */

@@ -227,11 +227,21 @@ static int balance(struct run *r, struct error *e)
     return partition_cut(d->partition, (const double *const *)place, d->weight, n, e);
 }
 
+/* Adds what was sent since then. */
+static void add_sent(const struct run_domain *d, struct halo_sent *to,
+                     const struct wire_count *since)
+{
+    const struct wire_count now = wire_count(d->wire);
+    to->messages += now.messages - since->messages;
+    to->bytes += now.bytes - since->bytes;
+}
+
 int run_domain_move(struct run *r, struct error *e)
 {
     struct run_domain *d = r->domain;
     if (!d)
         return 0;
+    const struct wire_count before = wire_count(d->wire);
     if (balance(r, e))
         return -1;
     for (size_t a = 0; a < r->plan->n_array; a++) {
@@ -248,6 +258,7 @@ int run_domain_move(struct run *r, struct error *e)
             return -1;
         d->moved += sent;
     }
+    add_sent(d, &d->for_moves, &before);
     return 0;
 }
 
@@ -258,6 +269,7 @@ int run_domain_ghosts(struct run *r, struct error *e)
     struct run_domain *d = r->domain;
     const struct plan *plan = r->plan;
     const size_t n = plan->n_array;
+    const struct wire_count before = wire_count(d->wire);
     for (size_t f = 0; f < plan->n_frame; f++)
         for (size_t a = 0; a < n; a++)
             d->cloud[f * n + a] =
@@ -282,7 +294,11 @@ int run_domain_ghosts(struct run *r, struct error *e)
                 return -1;
         }
     }
-    return run_domain_begin(r, e) || run_domain_finish(r, e) ? -1 : 0;
+    if (run_domain_begin(r, e) || run_domain_finish(r, e))
+        return -1;
+    d->halos++;
+    add_sent(d, &d->for_ghosts, &before);
+    return 0;
 }
 
 int run_domain_ask(struct run *r, size_t array, int column, struct error *e)

@@ -23,7 +23,10 @@ struct run_domain {
     size_t capacity;
     double imbalance; /* of the pairs, when particles were last sorted */
     uint64_t moved,
-        cuts; /* particles that have left this rank; how often the domain was cut anew */
+        cuts;       /* particles that have left this rank; how often the domain was cut anew */
+    uint64_t halos; /* how often ghosts were made anew */
+    struct halo_sent for_ghosts,
+        for_moves; /* of what was sent: while that was done; to move particles */
 };
 
 static inline bool run_shared(const struct run *r)

@@ -195,27 +195,36 @@ static int room_for(struct run_domain *d, size_t n, struct error *e)
     return d->capacity ? 0 : error_memory(e, "the domain", capacity * sizeof *d->place);
 }
 
+int run_domain_cost(struct run *r, double *cost, struct error *e)
+{
+    const struct plan *plan = r->plan;
+    size_t n = 0, at = 0;
+    for (size_t a = 0; a < plan->n_array; a++)
+        n += plan->array[a].p.n;
+    if (room_for(r->domain, n, e))
+        return -1;
+    *cost = 0.0;
+    for (size_t a = 0; a < plan->n_array; a++) {
+        *cost += weigh(r, a, r->domain->weight + at);
+        at += plan->array[a].p.n;
+    }
+    return 0;
+}
+
 /* Cuts anew if the shares have come to differ too much. */
 static int balance(struct run *r, struct error *e)
 {
     struct run_domain *d = r->domain;
     const struct plan *plan = r->plan;
-    size_t n = 0, at = 0;
-    double sum = 0.0;
-    for (size_t a = 0; a < plan->n_array; a++)
-        n += plan->array[a].p.n;
-    if (room_for(d, n, e))
+    size_t at = 0;
+    double sum;
+    if (run_domain_cost(r, &sum, e))
         return -1;
-    for (size_t a = 0; a < plan->n_array; a++) {
-        sum += weigh(r, a, d->weight + at);
-        at += plan->array[a].p.n;
-    }
     if (find_imbalance(r, sum, e))
         return -1;
     if (!r->lists_made || !(d->imbalance > plan->scene->ranks.imbalance))
         return 0;
     double *const place[3] = {d->place, d->place + d->capacity, d->place + 2 * d->capacity};
-    at = 0;
     for (size_t a = 0; a < plan->n_array; a++)
         for (size_t i = 0; i < plan->array[a].p.n; i++, at++) {
             double x[3];
@@ -224,7 +233,7 @@ static int balance(struct run *r, struct error *e)
                 place[c][at] = x[c];
         }
     d->cuts++;
-    return partition_cut(d->partition, (const double *const *)place, d->weight, n, e);
+    return partition_cut(d->partition, (const double *const *)place, d->weight, at, e);
 }
 
 /* Adds what was sent since then. */

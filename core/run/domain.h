@@ -42,6 +42,9 @@ int run_domain_move(struct run *r, struct error *e);
 /* Ghosts of what this rank's lists may reach: room for them, and who they are; of their columns positions and
  * smoothing lengths are right. */
 int run_domain_ghosts(struct run *r, struct error *e);
+/* What this rank's share costs, in pairs: those of its lists for each sweep of an evaluation that walks them, and
+ * something for each particle. */
+int run_domain_cost(struct run *r, double *cost, struct error *e);
 /* Columns that ghosts need anew, of any arrays: asked for one by one, then exchanged at once. */
 int run_domain_ask(struct run *r, size_t array, int column, struct error *e);
 int run_domain_begin(struct run *r, struct error *e);

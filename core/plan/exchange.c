@@ -62,15 +62,18 @@ static int want(struct going *g, size_t array, int column, struct error *e)
 
 /* -- A pass -------- */
 
-/* Before a sweep: all that it reads of sources, their places and smoothing lengths included. */
-static int before_sweep(struct going *g, size_t pass, bool again, struct error *e)
+/* Before a sweep: all that it reads of sources, their places and smoothing lengths included; and what the pass
+ * corrects as it ends (run/closing.c), as ghosts take its values before. */
+static int before_sweep(struct going *g, size_t pass, bool again, bool corrects, struct error *e)
 {
     const struct pass *p = &g->plan->pass[pass];
-    if (p->shape != SPH_PAIR)
-        return 0;
+    const struct plan_array *dst = &g->plan->array[p->dst.array];
     if (begin(g->x, pass, g->evaluation, again, e))
         return -1;
-    for (size_t s = 0; s < p->n_src; s++) {
+    for (size_t q = 0; corrects && q < dst->n_rate; q++)
+        if (dst->rate[q].closed == pass && want(g, p->dst.array, dst->rate[q].property, e))
+            return -1;
+    for (size_t s = 0; p->shape == SPH_PAIR && s < p->n_src; s++) {
         const struct plan_array *a = &g->plan->array[p->src[s].array];
         for (uint32_t k = 0; k < p->use.item->props.count; k++)
             if (want(g, p->src[s].array, p->src[s].column[k], e))
@@ -79,21 +82,6 @@ static int before_sweep(struct going *g, size_t pass, bool again, struct error *
             return -1;
     }
     end(g->x);
-    return 0;
-}
-
-/* What the pass corrects as it ends (closing.c): ghosts take its values before. */
-static int before_closing(struct going *g, size_t pass, struct error *e)
-{
-    const size_t array = g->plan->pass[pass].dst.array;
-    const struct plan_array *a = &g->plan->array[array];
-    for (size_t q = 0; q < a->n_rate; q++) {
-        if (a->rate[q].closed != pass)
-            continue;
-        if (begin(g->x, pass, g->evaluation, false, e) || want(g, array, a->rate[q].property, e))
-            return -1;
-        end(g->x);
-    }
     return 0;
 }
 
@@ -110,12 +98,12 @@ static int passes(struct going *g, enum moment moment, bool corrects, struct err
         const struct pass *p = &g->plan->pass[i];
         if (p->moment != moment)
             continue;
-        if (before_sweep(g, i, false, e) || (corrects && before_closing(g, i, e)))
+        if (before_sweep(g, i, false, corrects, e))
             return -1;
         written(g, p);
         if (!p->max_sweeps)
             continue;
-        if (before_sweep(g, i, true, e))
+        if (before_sweep(g, i, true, corrects, e))
             return -1;
         written(g, p);
     }

@@ -128,6 +128,8 @@ int loop_checkpoint(struct loop *l, struct error *e)
     if (!status)
         status = measures_sync(&l->measures, e);
     if (!status)
+        status = loop_ranks_sync(&l->ranks, e);
+    if (!status)
         status = write_file(l, temporary, NULL, e);
     if (!status)
         status = output_commit(l->out, temporary, name, e);

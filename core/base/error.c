@@ -50,7 +50,7 @@ int error_prefix(struct error *e, const char *format, ...)
     va_list args;
     size_t n;
 
-    if (!e) {
+    if (!e || !e->text[0]) { /* that of another rank, which says it itself */
         return -1;
     }
     va_start(args, format);

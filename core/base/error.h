@@ -20,7 +20,7 @@ struct error {
 int error_set(struct error *e, enum exit_code code, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
-/* Puts "prefix: " in front of the sentence; returns -1. */
+/* Puts "prefix: " in front of the sentence, if there is one; returns -1. */
 int error_prefix(struct error *e, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
 /* For a failed allocation of `bytes` for `what`. */

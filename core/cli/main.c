@@ -3,6 +3,7 @@
 
 #include "base/text.h"
 #include "cli/cli.h"
+#include "domain/ranks.h"
 
 #include <sph/abi.h>
 #include <signal.h>
@@ -98,7 +99,16 @@ static bool is_given(int end, char **argv, const char *a, const char *b)
     return false;
 }
 
-/* Takes the command's word out of the arguments. */
+/* It starts runs of its own, which would take themselves for ranks. */
+static int refuse_ranks(int size)
+{
+    struct error e = {0};
+    error_set(&e, EXIT_USAGE,
+              "`sph chart' starts runs of its own: start it without mpirun, not on %d ranks", size);
+    return cli_error(&e);
+}
+
+/* Takes the command's word out of the arguments. Of many ranks all run; whatever else there is the first does alone. */
 static int run_command(size_t command, int word, int argc, char **argv)
 {
     if (word < argc) {
@@ -106,6 +116,12 @@ static int run_command(size_t command, int word, int argc, char **argv)
         argc--;
     }
     argv[0] = (char *)commands[command].title;
+    int rank, size;
+    ranks_launched(&rank, &size);
+    if (rank > 0 && commands[command].run != cli_run)
+        return EXIT_DONE;
+    if (size > 1 && commands[command].run == cli_chart)
+        return refuse_ranks(size);
     return commands[command].run(argc, argv);
 }
 
@@ -126,14 +142,16 @@ static int not_a_command(const char *word)
 static int dispatch(int argc, char **argv)
 {
     const int word = first_word(argc, argv);
+    int rank, size;
 
+    ranks_launched(&rank, &size);
     if (is_given(word, argv, "--version", "-V"))
-        return version();
+        return rank > 0 ? EXIT_DONE : version();
     for (size_t i = 0; word < argc && i < N_COMMANDS; i++)
         if (strcmp(argv[word], commands[i].name) == 0 && strcmp(argv[word - 1], "--") != 0)
             return run_command(i, word, argc, argv);
     if (is_given(word, argv, "--help", "-?"))
-        return help();
+        return rank > 0 ? EXIT_DONE : help();
     if (argc == 1) {
         const struct error e = {EXIT_USAGE, "no scene is given (`sph --help' tells more)"};
         return cli_error(&e);

@@ -1,4 +1,5 @@
 /* cli/run.c -- `sph [run] SCENE`: a scene from file to results. */
+#include "base/quiet.h"
 #include "cli/cli.h"
 #include "cli/scene_options.h"
 #include "domain/ranks.h"
@@ -174,6 +175,13 @@ static char *out_folder(const struct arguments *a)
     return strdup(folder);
 }
 
+static bool is_first(void)
+{
+    int rank, size;
+    ranks_count(&rank, &size);
+    return rank == 0;
+}
+
 static int run(const struct arguments *a, struct loaded *l, const char *folder,
                struct resume *resume, struct error *e)
 {
@@ -189,14 +197,12 @@ static int run(const struct arguments *a, struct loaded *l, const char *folder,
                              .stop = &interrupted,
                              .resume = resume};
     double end = isnan(a->until) ? l->scene.time.end : a->until;
-    if (!(end >= l->scene.time.begin))
+    if (!(end >= l->scene.time.begin)) /* on all ranks */
         return error_set(e, EXIT_USAGE, "--until %g lies before the scene's begin, %g", end,
                          l->scene.time.begin);
-    int rank, ranks;
-    ranks_count(&rank, &ranks);
     out = (struct output){.lock = -1};
-    if (run_check(&l->plan, a->path, a->audit, e) ||
-        ranks_agree(rank == 0 ? output_claim(&out, folder, e) : 0, e))
+    if (ranks_agree(run_check(&l->plan, a->path, a->audit, e), e) ||
+        ranks_agree(is_first() ? output_claim(&out, folder, e) : 0, e))
         return -1;
     signal(SIGINT, interrupt);
     signal(SIGTERM, interrupt);
@@ -215,11 +221,11 @@ static int run_or_show(const struct arguments *a, const char *folder, struct res
     if (!status && a->verbose)
         l.registry.log_level = SPH_LOG_INFO;
     if (!status && !resume)
-        status = plan_fill(&l.plan, e);
-    if (!status && !resume && (a->dry || a->verbose))
+        status = ranks_agree(plan_fill(&l.plan, e), e);
+    if (!status && !resume && (a->dry || a->verbose) && is_first())
         plan_print(&l.plan, stdout);
     if (!status && !a->dry)
-        status = bodies_need_device(&l.plan, e) || run(a, &l, folder, resume, e);
+        status = ranks_agree(bodies_need_device(&l.plan, e), e) || run(a, &l, folder, resume, e);
     loaded_free(&l);
     return status;
 }
@@ -234,14 +240,16 @@ static int run_from(struct arguments *a, struct error *e)
     int status = 0;
     if (!a->resume) {
         status = run_or_show(a, folder, NULL, e);
-    } else if (!(status = resume_open(&resume, a->resume, folder, e))) {
-        if (!a->scene.path) {
+    } else {
+        status = ranks_agree(resume_open(&resume, a->resume, folder, e), e);
+        if (!status && !a->scene.path) {
             a->scene.path = resume.origin.scene_path;
             a->scene.text = resume.origin.scene;
             a->scene.before = resume.origin.set;
             a->scene.n_before = resume.origin.n_set;
         }
-        status = run_or_show(a, folder, &resume, e);
+        if (!status)
+            status = run_or_show(a, folder, &resume, e);
         resume_close(&resume);
     }
     free(folder);
@@ -262,8 +270,14 @@ int cli_run(int argc, char **argv)
             "scene is wrong; 3 a plugin is refused."};
     struct arguments a = {.threads = omp_get_num_procs(), .until = NAN, .steps = UINT64_MAX};
     struct error e = {0};
-    argp_err_exit_status = EXIT_USAGE;
+    int rank, size, kept[2] = {-1, -1};
+    ranks_launched(&rank, &size);
+    /* What is wrong with the words the first says. No other may end with an error: mpirun would kill it. */
+    argp_err_exit_status = rank > 0 ? EXIT_DONE : EXIT_USAGE;
+    if (rank > 0)
+        quiet_begin(kept);
     argp_parse(&argp, argc, argv, 0, NULL, &a);
+    quiet_end(kept);
     int status = ranks_begin(&argc, &argv, &e);
     if (a.path == SPH_PATH_REFERENCE || a.path == SPH_PATH_EXTENDED)
         a.scene.precision = precision_name[PRECISION_DOUBLE];

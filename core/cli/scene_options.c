@@ -142,7 +142,7 @@ int loaded_make(struct loaded *l, const struct scene_options *o, bool guarded, s
     if (ranks_agree(load(l, o, e), e) || same_plugins(&l->registry, e))
         return -1;
     l->has_plan = true;
-    return plan_make(&l->plan, &l->registry, &l->scene, guarded, e);
+    return ranks_agree(plan_make(&l->plan, &l->registry, &l->scene, guarded, e), e);
 }
 
 void loaded_free(struct loaded *l)

@@ -7,7 +7,27 @@
 #if SPH_HAVE_MPI
 #include <mpi.h>
 
-/* Set by the launchers of Open MPI, by Slurm and by Hydra. */
+/* Of what launchers set; -1: none of it. */
+static int number_of(const char *const *names)
+{
+    for (; *names; names++) {
+        const char *text = getenv(*names);
+        if (text && *text >= '0' && *text <= '9')
+            return (int)strtol(text, NULL, 10);
+    }
+    return -1;
+}
+
+/* Open MPI, Hydra and Slurm's pmi2, Slurm's pmix. */
+void ranks_launched(int *rank, int *size)
+{
+    static const char *const ranks[] = {"OMPI_COMM_WORLD_RANK", "PMI_RANK", "PMIX_RANK", NULL};
+    static const char *const sizes[] = {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", NULL};
+    const int r = number_of(ranks), n = number_of(sizes);
+    *rank = r > 0 ? r : 0;
+    *size = n > *rank ? n : *rank + 1;
+}
+
 static int launched(void)
 {
     return getenv("OMPI_COMM_WORLD_SIZE") || getenv("PMI_SIZE") || getenv("PMIX_RANK");
@@ -50,12 +70,9 @@ int ranks_agree(int status, struct error *e)
     if (number[0] == 0)
         return 0;
     speaker %= size;
-    int code = e->exit_code;
-    MPI_Bcast(&code, 1, MPI_INT, speaker, MPI_COMM_WORLD);
-    if (rank != speaker)
-        *e = (struct error){code, ""};
-    else if (number[1] < size && e->text[0])
+    if (rank == speaker && number[1] < size && e->text[0])
         error_prefix(e, "rank %d", rank); /* what all ranks meet needs no name */
+    MPI_Bcast(e, (int)sizeof *e, MPI_BYTE, speaker, MPI_COMM_WORLD);
     return -1;
 }
 
@@ -76,6 +93,12 @@ int ranks_begin(int *argc, char ***argv, struct error *e)
     (void)argv;
     (void)e;
     return 0;
+}
+
+void ranks_launched(int *rank, int *size)
+{
+    *rank = 0;
+    *size = 1;
 }
 
 void ranks_count(int *rank, int *size)

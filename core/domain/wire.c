@@ -21,7 +21,7 @@ struct wire {
     MPI_Datatype term; /* of wire_reduce */
     MPI_Op merge;
     MPI_Request *request; /* of parcels under way */
-    size_t n_request, capacity;
+    size_t n_request, n_receive, capacity; /* receives come first */
     bool alarmed;
     struct wire_count count;
 };
@@ -66,8 +66,8 @@ int wire_open(struct wire **out, struct error *e)
 {
     int rank, size;
     struct wire *w = *out = calloc(1, sizeof *w);
-    if (!w)
-        return error_memory(e, "the domain", sizeof *w);
+    if (ranks_agree(w ? 0 : error_memory(e, "the domain", sizeof *w), e))
+        return -1;
     ranks_count(&rank, &size);
     w->rank = rank;
     w->size = size;
@@ -168,6 +168,30 @@ static int wait(struct wire *w, MPI_Request *request, size_t n, struct error *e)
     return 0;
 }
 
+/* How long a message that has begun to arrive may take to do so when all others are on their way home. */
+#define LAST_SECONDS 5.0
+
+void wire_renew(struct wire *w)
+{
+    if (!w || w->size == 1)
+        return;
+    /* What has arrived by half goes on arriving: not into memory that is free by then. */
+    for (size_t k = 0; k < w->n_receive; k++)
+        if (w->request[k] != MPI_REQUEST_NULL)
+            MPI_Cancel(&w->request[k]);
+    const double begin = MPI_Wtime();
+    for (int done = 0; w->n_receive && !done && MPI_Wtime() < begin + LAST_SECONDS;)
+        MPI_Testall((int)w->n_receive, w->request, &done, MPI_STATUSES_IGNORE);
+    for (size_t k = w->n_receive; k < w->n_request; k++)
+        if (w->request[k] != MPI_REQUEST_NULL)
+            MPI_Request_free(&w->request[k]);
+    w->n_request = w->n_receive = 0;
+    /* What nobody has taken stays where it is, and so do the old ways. */
+    MPI_Comm_dup(MPI_COMM_WORLD, &w->comm);
+    MPI_Comm_dup(MPI_COMM_WORLD, &w->alarm);
+    w->alarmed = false;
+}
+
 /* -- Messages -------- */
 
 static int post(struct wire *w, const struct parcel *p, bool sends, struct error *e)
@@ -198,12 +222,14 @@ static int post(struct wire *w, const struct parcel *p, bool sends, struct error
 int wire_begin(struct wire *w, const struct parcel *send, size_t n_send,
                const struct parcel *receive, size_t n_receive, struct error *e)
 {
-    w->n_request = 0;
+    w->n_request = w->n_receive = 0;
     if (w->size == 1)
         return 0;
-    for (size_t k = 0; k < n_receive; k++)
+    for (size_t k = 0; k < n_receive; k++) {
         if (post(w, &receive[k], false, e))
             return -1;
+        w->n_receive = w->n_request;
+    }
     for (size_t k = 0; k < n_send; k++)
         if (post(w, &send[k], true, e))
             return -1;
@@ -219,102 +245,144 @@ void wire_poke(struct wire *w)
 
 int wire_finish(struct wire *w, struct error *e)
 {
-    const size_t n = w->n_request;
-    w->n_request = 0;
-    return n ? wait(w, w->request, n, e) : 0;
+    if (w->n_request && wait(w, w->request, w->n_request, e))
+        return -1;
+    w->n_request = w->n_receive = 0;
+    return 0;
 }
 
 /* -- Of all ranks -------- */
 
-static int collective(struct wire *w, int status, MPI_Request *request, size_t bytes,
-                      struct error *e)
+/* After an alarm others may go on writing to what a call was given, when its caller has gone: MPI works on a copy,
+ * which then is left to it. */
+static void *copy_of(const void *data, size_t bytes, struct error *e)
+{
+    void *copy = malloc(bytes);
+    if (!copy)
+        error_memory(e, "what ranks share", bytes);
+    else if (data)
+        memcpy(copy, data, bytes);
+    return copy;
+}
+
+/* Waits for a call of all ranks, and takes what has come. */
+static int collective(struct wire *w, int status, MPI_Request *request, size_t sent, void *copy,
+                      void *to, size_t bytes, struct error *e)
 {
     if (status)
         return failed(e);
     w->count.collectives++;
-    w->count.collective_bytes += bytes;
-    return wait(w, request, 1, e);
+    w->count.collective_bytes += sent;
+    if (wait(w, request, 1, e))
+        return -1;
+    memcpy(to, copy, bytes);
+    free(copy);
+    return 0;
 }
 
 int wire_reduce(struct wire *w, double *value, const uint32_t *op, size_t n, struct error *e)
 {
     if (w->size == 1 || n == 0)
         return 0;
-    struct term *term = malloc(n * sizeof *term);
+    const size_t bytes = n * sizeof(struct term);
+    struct term *term = malloc(bytes), *copy;
     MPI_Request request;
     if (!term)
-        return error_memory(e, "sums", n * sizeof *term);
+        return error_memory(e, "sums", bytes);
     for (size_t k = 0; k < n; k++)
         term[k] = (struct term){value[k], op[k]};
-    const int status = collective(
-        w, MPI_Iallreduce(MPI_IN_PLACE, term, (int)n, w->term, w->merge, w->comm, &request),
-        &request, n * sizeof *term, e);
+    copy = copy_of(term, bytes, e);
+    const int status =
+        copy ? collective(
+                   w,
+                   MPI_Iallreduce(MPI_IN_PLACE, copy, (int)n, w->term, w->merge, w->comm, &request),
+                   &request, bytes, copy, term, bytes, e)
+             : -1;
     for (size_t k = 0; !status && k < n; k++)
         value[k] = term[k].value;
-    if (!status)
-        free(term); /* else somebody may still write to it */
+    free(term);
     return status;
 }
 
-int wire_exact(struct wire *w, struct exact_sum *sum, size_t n, struct error *e)
+/* Sums of n whole numbers: signed ones alike, but for their type. */
+static int sum(struct wire *w, void *value, size_t n, MPI_Datatype type, struct error *e)
 {
+    const size_t bytes = n * sizeof(uint64_t);
     MPI_Request request;
-    const size_t words = n * sizeof *sum / sizeof(int64_t);
-    for (size_t k = 0; k < n; k++)
-        exact_carry(&sum[k]);
     if (w->size == 1 || n == 0)
         return 0;
-    return collective(
-        w, MPI_Iallreduce(MPI_IN_PLACE, sum, (int)words, MPI_INT64_T, MPI_SUM, w->comm, &request),
-        &request, n * sizeof *sum, e);
+    void *copy = copy_of(value, bytes, e);
+    return copy
+               ? collective(
+                     w, MPI_Iallreduce(MPI_IN_PLACE, copy, (int)n, type, MPI_SUM, w->comm, &request),
+                     &request, bytes, copy, value, bytes, e)
+               : -1;
+}
+
+int wire_exact(struct wire *w, struct exact_sum *exact, size_t n, struct error *e)
+{
+    for (size_t k = 0; k < n; k++)
+        exact_carry(&exact[k]);
+    return sum(w, exact, n * sizeof *exact / sizeof(int64_t), MPI_INT64_T, e);
 }
 
 int wire_sum(struct wire *w, uint64_t *value, size_t n, struct error *e)
 {
-    MPI_Request request;
-    if (w->size == 1 || n == 0)
-        return 0;
-    return collective(
-        w, MPI_Iallreduce(MPI_IN_PLACE, value, (int)n, MPI_UINT64_T, MPI_SUM, w->comm, &request),
-        &request, n * sizeof *value, e);
+    return sum(w, value, n, MPI_UINT64_T, e);
 }
 
 int wire_before(struct wire *w, uint64_t *value, size_t n, struct error *e)
 {
+    const size_t bytes = n * sizeof *value;
     MPI_Request request;
     int status = 0;
-    if (w->size > 1 && n > 0)
-        status = collective(
-            w, MPI_Iexscan(MPI_IN_PLACE, value, (int)n, MPI_UINT64_T, MPI_SUM, w->comm, &request),
-            &request, n * sizeof *value, e);
+    if (w->size > 1 && n > 0) {
+        void *copy = copy_of(value, bytes, e);
+        status = copy ? collective(w,
+                                   MPI_Iexscan(MPI_IN_PLACE, copy, (int)n, MPI_UINT64_T, MPI_SUM,
+                                               w->comm, &request),
+                                   &request, bytes, copy, value, bytes, e)
+                      : -1;
+    }
     if (w->rank == 0)
-        memset(value, 0, n * sizeof *value);
+        memset(value, 0, bytes);
     return status;
 }
 
 int wire_gather(struct wire *w, const void *mine, size_t bytes, void *all, struct error *e)
 {
+    const size_t ranks = (size_t)w->size;
     MPI_Request request;
     if (w->size == 1) {
         memcpy(all, mine, bytes);
         return 0;
     }
-    return collective(
-        w, MPI_Iallgather(mine, (int)bytes, MPI_BYTE, all, (int)bytes, MPI_BYTE, w->comm, &request),
-        &request, bytes, e);
+    char *copy = copy_of(NULL, (ranks + 1) * bytes + 1, e); /* theirs, then mine */
+    if (!copy)
+        return -1;
+    memcpy(copy + ranks * bytes, mine, bytes);
+    return collective(w,
+                      MPI_Iallgather(copy + ranks * bytes, (int)bytes, MPI_BYTE, copy, (int)bytes,
+                                     MPI_BYTE, w->comm, &request),
+                      &request, bytes, copy, all, ranks * bytes, e);
 }
 
 int wire_trade(struct wire *w, const uint64_t *mine, uint64_t *theirs, size_t each, struct error *e)
 {
+    const size_t n = (size_t)w->size * each, bytes = n * sizeof *mine;
     MPI_Request request;
     if (w->size == 1) {
-        memcpy(theirs, mine, each * sizeof *mine);
+        memcpy(theirs, mine, bytes);
         return 0;
     }
+    uint64_t *copy = copy_of(NULL, 2 * bytes + 1, e);
+    if (!copy)
+        return -1;
+    memcpy(copy + n, mine, bytes);
     return collective(w,
-                      MPI_Ialltoall(mine, (int)each, MPI_UINT64_T, theirs, (int)each, MPI_UINT64_T,
-                                    w->comm, &request),
-                      &request, (size_t)w->size * each * sizeof *mine, e);
+                      MPI_Ialltoall(copy + n, (int)each, MPI_UINT64_T, copy, (int)each,
+                                    MPI_UINT64_T, w->comm, &request),
+                      &request, bytes, copy, theirs, bytes, e);
 }
 
 int wire_tell(struct wire *w, void *data, size_t bytes, struct error *e)
@@ -322,8 +390,10 @@ int wire_tell(struct wire *w, void *data, size_t bytes, struct error *e)
     MPI_Request request;
     if (w->size == 1 || bytes == 0)
         return 0;
-    return collective(w, MPI_Ibcast(data, (int)bytes, MPI_BYTE, 0, w->comm, &request), &request,
-                      w->rank == 0 ? bytes : 0, e);
+    void *copy = copy_of(data, bytes, e);
+    return copy ? collective(w, MPI_Ibcast(copy, (int)bytes, MPI_BYTE, 0, w->comm, &request),
+                             &request, w->rank == 0 ? bytes : 0, copy, data, bytes, e)
+                : -1;
 }
 
 #else
@@ -363,6 +433,11 @@ void wire_host(const struct wire *w, int *rank, int *ranks)
 }
 
 void wire_alarm(struct wire *w)
+{
+    (void)w;
+}
+
+void wire_renew(struct wire *w)
 {
     (void)w;
 }

@@ -24,6 +24,9 @@ int wire_size(const struct wire *w);
 void wire_host(const struct wire *w, int *rank, int *ranks);
 /* This rank has failed: the others stop waiting. Once is enough. */
 void wire_alarm(struct wire *w);
+/* After an alarm, when all have heard of it (ranks_agree): all ranks call it. What was under way is given up, and
+ * the wire is as new. */
+void wire_renew(struct wire *w);
 
 /* What this rank has sent to others so far: in messages, and for collective calls what it put in. Seconds: spent
  * waiting. */

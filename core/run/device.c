@@ -2,6 +2,7 @@
  * integrator's operations launched. Data stay there; what comes back at every evaluation is a handful of
  * numbers. */
 #include "run/device.h"
+#include "run/domain.h"
 
 #include "plan/device_memory.h"
 #include "run/chunks.h"
@@ -458,7 +459,10 @@ static int find_wrong(struct run *r, enum moment moment, struct error *e)
 
     if (look_at_all(r, moment, &wrong, e))
         return -1;
-    if (!wrong)
+    uint64_t any = wrong; /* all ranks look then: what they count they share */
+    if (run_share_count(r, &any, e))
+        return -1;
+    if (!any)
         return 0;
     if (run_device_fetch(r, e) || (moment == MOMENT_EVALUATE && watch_state(r, e)))
         return -1;

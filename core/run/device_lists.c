@@ -404,17 +404,17 @@ static int make_list(struct run *r, size_t k, bool counted, struct error *e)
         error_prefix(e, "neighbours of \"%s\"", r->plan->array[l->dst].p.name);
         return host_says(r, e);
     }
-    if (list->crowded) {
+    if (list->crowded && rule->action == WATCH_STOP) {
         error_set(e, EXIT_RUN, "%llu particles of \"%s\" have more than %llu neighbours",
                   (unsigned long long)list->crowded, r->plan->array[l->dst].p.name,
                   (unsigned long long)most);
-        if (rule->action == WATCH_STOP)
-            return host_says(r, e);
-        /* Counted: who they are is nobody's question. */
-        watch_counted(r,
-                      &(struct sign){.cause = WATCH_NEIGHBOURS, .array = &r->plan->array[l->dst]},
-                      list->crowded);
+        return host_says(r, e);
     }
+    /* Counted: who they are is nobody's question. */
+    const struct sign s = {.cause = WATCH_NEIGHBOURS, .array = &r->plan->array[l->dst]};
+    if ((list->crowded || r->domain) && watch_counts(r, WATCH_NEIGHBOURS) &&
+        watch_count(r, &s, list->crowded, e))
+        return -1;
     if (counted && list->n_entry)
         r->device->share[k] = (double)list->n_pair / (double)list->n_entry;
     return 0;

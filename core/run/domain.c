@@ -2,6 +2,7 @@
 #include "run/domain.h"
 #include "domain/migrate.h"
 #include "domain/ranks.h"
+#include "neighbours/far.h"
 #include "run/device.h"
 #include "run/frames.h"
 #include <stdlib.h>
@@ -15,7 +16,9 @@ static int shared(struct run_domain **out, const struct plan *plan, struct error
         return error_memory(e, "the domain", sizeof *d);
     d->want = calloc(plan->n_list + 1, sizeof *d->want);
     d->cloud = calloc(plan->n_frame * n + 1, sizeof *d->cloud);
-    if (!d->want || !d->cloud)
+    d->far = calloc(plan->n_list + 1, sizeof *d->far);
+    d->far_capacity = calloc(plan->n_list + 1, sizeof *d->far_capacity);
+    if (!d->want || !d->cloud || !d->far || !d->far_capacity)
         return error_memory(e, "the domain", n * plan->n_frame * sizeof *d->cloud);
     for (size_t k = 0; k < plan->n_list; k++) {
         const struct plan_list *l = &plan->list[k];
@@ -44,10 +47,10 @@ static int cut_first(struct run *r, struct error *e)
         n += plan->array[a].p.n;
     double *x = malloc((3 * (n / ranks + 1)) * sizeof *x);
     float *weight = malloc((n / ranks + 1) * sizeof *weight);
-    if (!x || !weight) {
+    if (ranks_agree(x && weight ? 0 : error_memory(e, "the domain", n * sizeof *x), e)) {
         free(x);
         free(weight);
-        return error_memory(e, "the domain", n * sizeof *x);
+        return -1;
     }
     double *const at[3] = {x, x + n / ranks + 1, x + 2 * (n / ranks + 1)};
     n = 0;
@@ -99,14 +102,15 @@ int run_domain_open(struct run *r, struct error *e)
         wire_close(wire);
         return status;
     }
-    const int status = shared(&r->domain, r->plan, e);
-    if (r->domain)
-        r->domain->wire = wire;
-    else
+    if (ranks_agree(shared(&r->domain, r->plan, e), e)) {
         wire_close(wire);
-    if (status || halo_open(&r->domain->halo, wire, r->plan->n_array, e) ||
-        partition_open(&r->domain->partition, (enum partitioner)r->plan->scene->ranks.partition,
-                       r->plan->dim, e))
+        return -1;
+    }
+    r->domain->wire = wire;
+    /* What cuts the domain does not hear an alarm. */
+    const enum partitioner kind = (enum partitioner)r->plan->scene->ranks.partition;
+    if (ranks_agree(halo_open(&r->domain->halo, wire, r->plan->n_array, e), e) ||
+        ranks_agree(partition_open(&r->domain->partition, kind, r->plan->dim, e), e))
         return -1;
     return cut_first(r, e) || keep_own(r, e) ? -1 : 0;
 }
@@ -121,6 +125,10 @@ void run_domain_close(struct run *r)
     wire_close(d->wire);
     free(d->want);
     free(d->cloud);
+    for (size_t k = 0; d->far && k < r->plan->n_list; k++)
+        free(d->far[k]);
+    free(d->far);
+    free(d->far_capacity);
     free(d->column);
     free(d->owner);
     free(d->weight);
@@ -197,8 +205,8 @@ static int room_for(struct run_domain *d, size_t n, struct error *e)
     return d->capacity ? 0 : error_memory(e, "the domain", capacity * sizeof *d->place);
 }
 
-/* Cuts anew if the shares have come to differ too much. */
-static int balance(struct run *r, struct error *e)
+/* Every particle's weight, and how even the shares are. */
+static int weigh_all(struct run *r, struct error *e)
 {
     struct run_domain *d = r->domain;
     const struct plan *plan = r->plan;
@@ -212,12 +220,31 @@ static int balance(struct run *r, struct error *e)
         sum += weigh(r, a, d->weight + at);
         at += plan->array[a].p.n;
     }
-    if (find_imbalance(r, sum, e))
+    return find_imbalance(r, sum, e);
+}
+
+int run_domain_uneven(struct run *r, bool *uneven, struct error *e)
+{
+    *uneven = false;
+    if (!r->domain)
+        return 0;
+    if (weigh_all(r, e))
+        return -1;
+    *uneven = r->domain->imbalance > r->plan->scene->ranks.imbalance;
+    return 0;
+}
+
+/* Cuts anew if the shares have come to differ too much. */
+static int balance(struct run *r, struct error *e)
+{
+    struct run_domain *d = r->domain;
+    const struct plan *plan = r->plan;
+    if (weigh_all(r, e))
         return -1;
     if (!r->lists_made || !(d->imbalance > plan->scene->ranks.imbalance))
         return 0;
+    size_t at = 0;
     double *const place[3] = {d->place, d->place + d->capacity, d->place + 2 * d->capacity};
-    at = 0;
     for (size_t a = 0; a < plan->n_array; a++)
         for (size_t i = 0; i < plan->array[a].p.n; i++, at++) {
             double x[3];
@@ -226,7 +253,7 @@ static int balance(struct run *r, struct error *e)
                 place[c][at] = x[c];
         }
     d->cuts++;
-    return partition_cut(d->partition, (const double *const *)place, d->weight, n, e);
+    return partition_cut(d->partition, (const double *const *)place, d->weight, at, e);
 }
 
 int run_domain_move(struct run *r, struct error *e)
@@ -312,8 +339,10 @@ int run_domain_ask(struct run *r, size_t array, int column, struct error *e)
 int run_domain_begin(struct run *r, struct error *e)
 {
     struct run_domain *d = r->domain;
-    return d && d->n_column ? halo_begin(&d->halo, &r->plan->scene->box, d->column, d->n_column, e)
-                            : 0;
+    if (!d || !d->n_column)
+        return 0;
+    d->waits = true;
+    return halo_begin(&d->halo, &r->plan->scene->box, d->column, d->n_column, e);
 }
 
 int run_domain_finish(struct run *r, struct error *e)
@@ -322,8 +351,51 @@ int run_domain_finish(struct run *r, struct error *e)
     if (!d || !d->n_column)
         return 0;
     const int status = halo_finish(&d->halo, d->column, d->n_column, e);
+    for (size_t k = 0; k < d->n_column; k++) {
+        uint8_t *old = &r->mirror_old[d->column[k].array][d->column[k].column];
+        *old = *old == MIRROR_FRESH ? MIRROR_GHOSTS_OLD : *old;
+    }
     d->n_column = 0;
+    d->waits = false;
     return status;
+}
+
+bool run_domain_waits(const struct run *r)
+{
+    return r->domain && r->domain->waits;
+}
+
+void run_domain_poke(const struct run *r)
+{
+    wire_poke(r->domain->wire);
+}
+
+int run_domain_list(struct run *r, size_t list, struct error *e)
+{
+    struct run_domain *d = r->domain;
+    const struct group_list *l = &r->list[list];
+    if (!d)
+        return 0;
+    const size_t array = r->plan->list[list].src;
+    if (l->n_group > d->far_capacity[list]) {
+        free(d->far[list]);
+        d->far_capacity[list] = l->n_group + l->n_group / 8;
+        d->far[list] = malloc(d->far_capacity[list] * sizeof *d->far[list]);
+        if (!d->far[list]) {
+            d->far_capacity[list] = 0;
+            return error_memory(e, "the domain", l->n_group);
+        }
+    }
+    group_list_far(l, r->plan->array[array].p.n + r->ghosts[array].n, d->far[list], r->threads);
+    return 0;
+}
+
+bool run_domain_far(const struct run *r, const struct pass *p, size_t group)
+{
+    for (size_t s = 0; s < p->n_src; s++)
+        if (group < r->list[p->list[s]].n_group && r->domain->far[p->list[s]][group])
+            return true;
+    return false;
 }
 
 /* -- Together -------- */
@@ -387,11 +459,13 @@ bool run_speaks(const struct run *r)
 
 int run_domain_agree(struct run *r, int status, struct error *e)
 {
-    if (!r->domain)
-        return status;
-    if (status && e->text[0])
+    if (status && e->text[0] && r->domain)
         wire_alarm(r->domain->wire);
-    return ranks_agree(status, e);
+    if (!ranks_agree(status, e))
+        return 0;
+    if (r->domain)
+        wire_renew(r->domain->wire);
+    return -1;
 }
 
 /* -- Of all ranks -------- */

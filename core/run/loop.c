@@ -88,10 +88,15 @@ static int choose_dt(struct loop *l, double *dt, struct error *e)
     return 0;
 }
 
+/* Ranks stop together: by what they have shared. */
+static bool was_stopped(const struct loop *l)
+{
+    return l->run.domain ? l->stopped : l->options->stop && *l->options->stop;
+}
+
 static bool finished(const struct loop *l)
 {
-    return !(l->run.time < l->end) || l->run.step >= l->max_steps ||
-           (l->run.domain ? l->stopped : l->options->stop && *l->options->stop);
+    return !(l->run.time < l->end) || l->run.step >= l->max_steps || was_stopped(l);
 }
 
 /* "every" takes the place of "steps", whose default stands beside it. */
@@ -140,7 +145,7 @@ static int after_step(struct loop *l, struct error *e)
                           "the energy is no longer a number");
     if (logged && (watch_energy(r, &l->first, &l->last, e) || loop_log(l, e)))
         return -1;
-    if (!last && !r->domain && measures_due(&l->measures) &&
+    if (!last && measures_due(&l->measures) &&
         (run_look(r, e) || measures_take(&l->measures, MEASURES_ON_THE_WAY, e)))
         return -1;
     watch_step(r);
@@ -169,8 +174,7 @@ static int start(struct loop *l, struct error *e)
     l->ended = finished(l);
     if (run_fetch(r, e))
         return -1;
-    return loop_log(l, e) || loop_snapshot(l, e) ||
-                   (!r->domain && measures_take(&l->measures, MEASURES_START, e))
+    return loop_log(l, e) || loop_snapshot(l, e) || measures_take(&l->measures, MEASURES_START, e)
                ? -1
                : 0;
 }
@@ -202,7 +206,7 @@ static int steps(struct loop *l, struct error *e)
     }
     if (run_fetch(r, e))
         return -1;
-    if (!r->domain && measures_take(&l->measures, MEASURES_END, e))
+    if (measures_take(&l->measures, MEASURES_END, e))
         return -1;
     r->cost.loop = loop_seconds(l);
     return loop_snapshot(l, e);
@@ -216,8 +220,9 @@ static int loop_begin(struct loop *l, struct plan *plan, struct error *e)
     l->end = isnan(l->options->until) ? s->time.end : l->options->until;
     l->max_steps = l->options->steps < s->time.steps ? l->options->steps : s->time.steps;
     l->scene_text = cJSON_Print(s->doc->root);
-    if (!l->scene_text)
-        return error_memory(e, "the scene's text", s->doc->length);
+    if (run_domain_agree(
+            &l->run, l->scene_text ? 0 : error_memory(e, "the scene's text", s->doc->length), e))
+        return -1;
     l->checkpointed = UINT64_MAX;
     l->refused =
         run_init(&l->run, plan, l->options->threads, l->options->path, l->options->audit, e) ||
@@ -228,12 +233,11 @@ static int loop_begin(struct loop *l, struct plan *plan, struct error *e)
         return -1;
     progress_start(&l->progress, l->options->progress && run_speaks(&l->run), l->begin, l->end);
     l->progress.started -= omp_get_wtime() - l->started; /* a run that goes on has begun earlier */
-    if (!run_speaks(&l->run))
-        return 0;
     char *path = output_path(l->out, "log.csv");
-    int status = !path                ? error_memory(e, "a path", 1)
-                 : l->options->resume ? log_append(&l->log, path, plan->dim, e)
-                                      : log_open(&l->log, path, plan->dim, e);
+    int status = !path                  ? error_memory(e, "a path", 1)
+                 : !run_speaks(&l->run) ? 0
+                 : l->options->resume   ? log_append(&l->log, path, plan->dim, e)
+                                        : log_open(&l->log, path, plan->dim, e);
     free(path);
     if (!status)
         status = measures_open(&l->measures, &l->run, l->out, l->options->resume != NULL, e);
@@ -253,20 +257,47 @@ static void tell_device(const struct loop *l, struct error *e)
                   e->text, (unsigned long long)l->checkpointed);
 }
 
+/* Whether all ranks have begun; and whether they stand at the same step, so that their particles make a state. */
+static bool can_keep(struct loop *l)
+{
+    static const uint32_t op[3] = {SPH_REDUCE_MAX, SPH_REDUCE_MAX, SPH_REDUCE_MIN};
+    const double step = (double)l->run.step;
+    double value[3] = {l->refused ? 1.0 : 0.0, step, step};
+    struct error ignored = {0};
+    if (run_share_numbers(&l->run, value, op, 3, &ignored) || value[0] > 0.0)
+        return false;
+    l->apart = value[1] > value[2];
+    return true;
+}
+
 /* Keeps the state in which the run failed; its own failures are not worth a second sentence. */
 static void keep_failed(struct loop *l, const struct error *e)
 {
     struct error ignored = {0};
     bool lost;
     run_device_failed(&l->run, &lost);
-    if (lost) {
+    if (lost || l->apart) {
         /* The columns here are of different times. */
     } else if (l->run.step > 0 || (l->run.watch && l->run.watch->failure.happened)) {
-        loop_snapshot(l, &ignored);
-        loop_checkpoint_failed(l, e->text, &ignored);
+        run_domain_agree(&l->run, loop_snapshot(l, &ignored), &ignored);
+        ignored = (struct error){0};
+        if (!l->run.domain)
+            loop_checkpoint_failed(l, e->text, &ignored);
     }
     ignored = (struct error){0};
-    loop_summarise(l, "failed", e->text, &ignored);
+    if (run_speaks(&l->run))
+        loop_summarise(l, "failed", e->text, &ignored);
+}
+
+/* What is told at the end. */
+static int tell(struct loop *l, struct error *e)
+{
+    if (log_close(&l->log, e) || measures_close(&l->measures, e))
+        return -1;
+    if (!run_speaks(&l->run))
+        return 0;
+    return loop_draw(l, e) || loop_summarise(l, was_stopped(l) ? "stopped" : "done", NULL, e) ? -1
+                                                                                              : 0;
 }
 
 int loop_run(struct plan *plan, const struct output *out, const struct loop_options *o,
@@ -281,14 +312,8 @@ int loop_run(struct plan *plan, const struct output *out, const struct loop_opti
     status = run_domain_agree(&l.run, status, e);
     progress_end(&l.progress);
     if (!status)
-        status = log_close(&l.log, e);
-    if (!status)
-        status = measures_close(&l.measures, e);
-    if (!status)
-        status = run_speaks(&l.run) ? loop_draw(&l, e) : 0;
-    if (!status && run_speaks(&l.run))
-        status = loop_summarise(&l, o->stop && *o->stop ? "stopped" : "done", NULL, e);
-    else if (status && l.run.plan && !l.refused && !l.run.domain) {
+        status = run_domain_agree(&l.run, tell(&l, e), e);
+    if (status && l.run.plan && can_keep(&l)) {
         tell_device(&l, e);
         keep_failed(&l, e);
     }

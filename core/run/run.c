@@ -56,8 +56,7 @@ static bool changes_h(const struct plan *plan)
     return false;
 }
 
-int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool audit,
-             struct error *e)
+static int room_for(struct run *r, struct plan *plan, int threads, uint32_t path, struct error *e)
 {
     const size_t n = plan->n_array;
     *r = (struct run){.plan = plan, .threads = threads, .path = path, .skin = plan->skin};
@@ -95,6 +94,15 @@ int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool 
             return error_memory(e, "the run", columns);
         memset(r->mirror_old[a], MIRROR_OLD, columns);
     }
+    return 0;
+}
+
+int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool audit,
+             struct error *e)
+{
+    /* Until there is a domain nobody would hear an alarm. */
+    if (run_domain_agree(r, room_for(r, plan, threads, path, e), e))
+        return -1;
     if (run_domain_open(r, e) || hold(plan, e) || watch_open(r, e))
         return -1;
     if (run_check(plan, path, audit, e) || (plan->on_device && run_device_open(r, e)))

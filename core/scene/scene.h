@@ -255,7 +255,7 @@ struct scene {
         size_t partition; /* by domain/partition.h: 0 "rcb", 1 "rib", 2 "hsfc" */
         double
             imbalance; /* largest share of a rank over the mean, from which the domain is cut anew */
-    } ranks;           /* optional key "ranks": {"partition": "rcb", "imbalance": 1.05} */
+    } ranks;           /* optional key "ranks": {"partition": "rcb", "imbalance": 1.01} */
     const char *precision; /* "double", "mixed", "single"; NULL: the scheme's */
     /* The command line's, as `precision` may be. */
     struct {

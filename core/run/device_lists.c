@@ -344,8 +344,10 @@ static int make_halo(struct run *r, double margin, struct error *e)
 {
     for (size_t a = 0; a < r->plan->n_array; a++)
         for (int c = 0; c < r->plan->dim; c++)
-            if (sides_check_width(&r->plan->scene->box, c, margin, r->plan->array[a].p.name, e))
-                return no_ghosts(r, e);
+            if (sides_check_width(&r->plan->scene->box, c, margin, r->plan->array[a].p.name, e)) {
+                struct error why = {0};
+                return places_there(r, &why) ? -1 : watch_too_wide(r, e);
+            }
     if (run_device_halo(r, e))
         return no_ghosts(r, e);
     for (size_t f = 1; f < r->plan->n_frame; f++)
@@ -448,10 +450,8 @@ static int freeze(struct run *r, size_t frame, struct error *e)
     return 0;
 }
 
-static int build(struct run *r, bool within, struct error *e)
+static int build(struct run *r, bool within, bool sorts, struct error *e)
 {
-    const bool sorts = !within && (!r->lists_made || ++r->builds_since_sort >= BUILDS_PER_SORT);
-
     if (look_for_escaped(r, e) || (!within && wrap(r, e)) || (sorts && sort(r, e)) ||
         make_ghosts(r, e))
         return -1;
@@ -468,7 +468,7 @@ static int meet_again(struct run *r, size_t frame, struct error *e)
 
     if (!run_shared(r))
         return 0;
-    if (holds(r, r->device->met, frame, &right, e) || (!right && build(r, true, e)))
+    if (holds(r, r->device->met, frame, &right, e) || (!right && build(r, true, false, e)))
         return -1;
     for (size_t a = 0; a < r->plan->n_array; a++)
         if (frame_has(r, frame, a) && (run_device_refresh(r, a, frame_place(r, frame, a), e) ||
@@ -507,6 +507,15 @@ int run_device_frame(struct run *r, size_t frame, struct error *e)
     return status;
 }
 
+static int renew(struct run *r, bool within, bool sorts, struct error *e)
+{
+    const int status = build(r, within, sorts, e);
+
+    r->lists_made = !status;
+    r->cost.list_builds++;
+    return status;
+}
+
 static int lists(struct run *r, bool within, struct error *e)
 {
     bool right = false;
@@ -517,9 +526,14 @@ static int lists(struct run *r, bool within, struct error *e)
     if (!status && r->lists_made)
         status = holds(r, r->device->skin, 0, &right, e);
     if (!status && !right) {
-        status = build(r, within, e);
-        r->lists_made = !status;
-        r->cost.list_builds++;
+        const bool first = !within && !r->lists_made && r->cost.list_builds == 0;
+        const bool sorts = !within && (!r->lists_made || ++r->builds_since_sort >= BUILDS_PER_SORT);
+        bool uneven = false;
+        status = renew(r, within, sorts, e);
+        if (!status && first)
+            status = run_domain_uneven(r, &uneven, e);
+        if (!status && uneven)
+            status = renew(r, within, sorts, e);
     }
     r->lists_suspect = false;
     return status;

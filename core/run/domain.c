@@ -314,7 +314,8 @@ int run_domain_meet(struct run *r, struct error *e)
                                  .cloud = d->cloud,
                                  .want = d->want,
                                  .n_want = d->n_want,
-                                 .factor = 1.0 + r->skin};
+                                 /* Lists of other frames are made later: there is room to move. */
+                                 .factor = 1.0 + (plan->n_frame > 1 ? 2.0 : 1.0) * r->skin};
     d->halos++;
     return halo_make(&d->halo, &job, r->ghosts, e);
 }

@@ -323,6 +323,8 @@ int loop_run(struct plan *plan, const struct output *out, const struct loop_opti
     int status = loop_begin(&l, plan, e);
     if (!status)
         status = steps(&l, e);
+    if (status && l.run.domain && !l.refused)
+        tell_device(&l, e);
     status = run_domain_agree(&l.run, status, e);
     progress_end(&l.progress);
     if (!status)

@@ -20,7 +20,7 @@ struct wire {
     MPI_Comm comm, alarm;
     MPI_Datatype term; /* of wire_reduce */
     MPI_Op merge;
-    MPI_Request *request; /* of parcels under way */
+    MPI_Request *request;                  /* of parcels under way */
     size_t n_request, n_receive, capacity; /* receives come first */
     bool alarmed;
     struct wire_count count;
@@ -273,12 +273,11 @@ int wire_reduce(struct wire *w, double *value, const uint32_t *op, size_t n, str
     for (size_t k = 0; k < n; k++)
         term[k] = (struct term){value[k], op[k]};
     copy = copy_of(term, bytes, e);
-    const int status =
-        copy ? collective(
-                   w,
-                   MPI_Iallreduce(MPI_IN_PLACE, copy, (int)n, w->term, w->merge, w->comm, &request),
-                   &request, bytes, copy, term, bytes, e)
-             : -1;
+    const int status = copy ? collective(w,
+                                         MPI_Iallreduce(MPI_IN_PLACE, copy, (int)n, w->term,
+                                                        w->merge, w->comm, &request),
+                                         &request, bytes, copy, term, bytes, e)
+                            : -1;
     for (size_t k = 0; !status && k < n; k++)
         value[k] = term[k].value;
     free(term);
@@ -293,11 +292,11 @@ static int sum(struct wire *w, void *value, size_t n, MPI_Datatype type, struct 
     if (w->size == 1 || n == 0)
         return 0;
     void *copy = copy_of(value, bytes, e);
-    return copy
-               ? collective(
-                     w, MPI_Iallreduce(MPI_IN_PLACE, copy, (int)n, type, MPI_SUM, w->comm, &request),
-                     &request, bytes, copy, value, bytes, e)
-               : -1;
+    return copy ? collective(
+                      w,
+                      MPI_Iallreduce(MPI_IN_PLACE, copy, (int)n, type, MPI_SUM, w->comm, &request),
+                      &request, bytes, copy, value, bytes, e)
+                : -1;
 }
 
 int wire_exact(struct wire *w, struct exact_sum *exact, size_t n, struct error *e)

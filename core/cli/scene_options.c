@@ -28,6 +28,7 @@ static void parse_device(struct scene_options *o, const char *text, struct argp_
     char *end = NULL;
     o->device_opencl = strncmp(text, "opencl", 6) == 0;
     o->device_number = 0;
+    o->device_numbered = o->device_opencl && text[6] == ':';
     if (o->device_opencl && text[6] == ':' && text[7] >= '0' && text[7] <= '9')
         o->device_number = strtoul(text + 7, &end, 10);
     if (strcmp(text, "cpu") != 0 && strcmp(text, "opencl") != 0 && !(end && *end == '\0'))
@@ -114,6 +115,7 @@ static int load(struct loaded *l, const struct scene_options *o, struct error *e
         l->scene.precision = o->precision;
     l->scene.device.opencl = o->device_opencl;
     l->scene.device.number = o->device_number;
+    l->scene.device.numbered = o->device_numbered;
     l->scene.device.only = o->device_only;
     if (registry_init(&l->registry, e))
         return -1;

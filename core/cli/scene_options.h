@@ -18,7 +18,8 @@ struct scene_options {
     const char *precision; /* --precision, or NULL */
     bool device_opencl;    /* --device opencl[:device_number] */
     size_t device_number;
-    bool device_only; /* --device-only */
+    bool device_numbered; /* N was given */
+    bool device_only;     /* --device-only */
 };
 
 /* An argp child that fills a struct scene_options (its input). */

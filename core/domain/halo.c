@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define TILES 96 /* boxes by which a rank tells where an array's destinations stand */
-#define BLOCK 64 /* sources that are looked at together */
+#define TILES 512 /* boxes, at most, by which a rank tells where an array's destinations stand */
+#define BLOCK 64  /* sources that are looked at together */
 #define SLACK 1.005
 
 /* A box, and how far what is in it reaches. Without anything in it lo is above hi. */
@@ -74,33 +74,42 @@ static int peer_add(struct halo *h, int rank, struct error *e)
 
 /* -- Boxes -------- */
 
-static struct tile tile_of(const struct cloud *c, size_t first, size_t end, double factor)
+static struct tile tile_none(int dim)
 {
     struct tile t = {.reach = 0.0};
     for (int a = 0; a < 3; a++) {
-        t.lo[a] = a < c->dim ? INFINITY : 0.0;
-        t.hi[a] = a < c->dim ? -INFINITY : 0.0;
-    }
-    for (size_t i = first; i < end; i++) {
-        const double reach = factor * c->scale * c->h[i];
-        t.reach = reach > t.reach ? reach : t.reach;
-        for (int a = 0; a < c->dim; a++) {
-            t.lo[a] = c->x[a][i] < t.lo[a] ? c->x[a][i] : t.lo[a];
-            t.hi[a] = c->x[a][i] > t.hi[a] ? c->x[a][i] : t.hi[a];
-        }
+        t.lo[a] = a < dim ? INFINITY : 0.0;
+        t.hi[a] = a < dim ? -INFINITY : 0.0;
     }
     return t;
 }
 
-static size_t share_of(size_t n)
+static inline void tile_add(struct tile *t, const struct cloud *c, size_t i, double factor)
 {
-    const size_t each = (n + TILES - 1) / TILES;
-    return each < BLOCK ? BLOCK : (each + 7) / 8 * 8;
+    const double reach = factor * c->scale * c->h[i];
+    t->reach = reach > t->reach ? reach : t->reach;
+    for (int a = 0; a < c->dim; a++) {
+        const double x = c->x[a][i];
+        t->lo[a] = x < t->lo[a] ? x : t->lo[a];
+        t->hi[a] = x > t->hi[a] ? x : t->hi[a];
+    }
 }
 
-static size_t tiles_of(size_t n)
+static struct tile tile_of(const struct cloud *c, size_t first, size_t end, double factor)
 {
-    return (n + share_of(n) - 1) / share_of(n);
+    struct tile t = tile_none(c->dim);
+    for (size_t i = first; i < end; i++)
+        tile_add(&t, c, i, factor);
+    return t;
+}
+
+static void tile_join(struct tile *t, const struct tile *other)
+{
+    t->reach = other->reach > t->reach ? other->reach : t->reach;
+    for (int a = 0; a < 3; a++) {
+        t->lo[a] = other->lo[a] < t->lo[a] ? other->lo[a] : t->lo[a];
+        t->hi[a] = other->hi[a] > t->hi[a] ? other->hi[a] : t->hi[a];
+    }
 }
 
 /* As an image of a box. */
@@ -121,11 +130,12 @@ static struct tile tile_image(const struct box *box, struct tile t, unsigned cod
 /* Whether sources in a box may be within reach of destinations in another. */
 static bool near(const struct tile *src, const struct tile *dst, bool symmetric)
 {
-    const double reach = symmetric ? fmax(src->reach, dst->reach) : dst->reach;
+    const double reach = symmetric && src->reach > dst->reach ? src->reach : dst->reach;
     double gap2 = 0.0;
     for (int a = 0; a < 3; a++) {
-        const double gap = fmax(0.0, fmax(dst->lo[a] - src->hi[a], src->lo[a] - dst->hi[a]));
-        gap2 += gap * gap;
+        const double below = dst->lo[a] - src->hi[a], above = src->lo[a] - dst->hi[a];
+        const double gap = below > above ? below : above;
+        gap2 += gap > 0.0 ? gap * gap : 0.0;
     }
     return gap2 <= reach * reach; /* of empty ones gaps are infinite */
 }
@@ -151,8 +161,12 @@ struct making {
     const struct halo_job *job;
     unsigned code[27];
     size_t n_code, n_cloud;
-    struct tile *whole;   /* [rank * n_cloud + cloud]: all of a rank's */
-    uint64_t *n_particle; /* [rank * n_cloud + cloud] */
+    struct tile *mine;   /* of this rank's clouds one after the other */
+    size_t n_mine;       /* of all of them */
+    struct tile *block;  /* [n_block]: its particles, BLOCK at a time, of all clouds */
+    size_t *first_block; /* [cloud + 1] */
+    struct tile *whole;  /* [rank * n_cloud + cloud]: all of a rank's */
+    uint64_t *n_tile;    /* [rank * n_cloud + cloud] */
     /* Of the peer at hand. */
     struct tile *tile; /* of each of its clouds one after the other */
     size_t *first;     /* [n_cloud + 1] */
@@ -180,6 +194,75 @@ static bool ranks_near(const struct making *m, int holder, int seeker)
     return false;
 }
 
+/* -- This rank's -------- */
+
+/* Cells over a box, as cubic as it goes, no more than TILES. */
+struct cells {
+    double lo[3], scale[3];
+    size_t n[3];
+};
+
+static struct cells cells_over(const struct tile *whole, int dim)
+{
+    struct cells c = {.n = {1, 1, 1}};
+    double volume = 1.0, edge;
+    int axes = 0;
+    for (int a = 0; a < dim; a++) {
+        const double length = whole->hi[a] - whole->lo[a];
+        volume *= length > 0.0 ? length : 1.0;
+        axes += length > 0.0;
+        c.lo[a] = whole->lo[a];
+    }
+    edge = axes ? pow(volume / TILES, 1.0 / axes) : 1.0;
+    for (bool fits = false; axes && !fits; edge *= 1.1) {
+        double n = 1.0;
+        for (int a = 0; a < dim; a++)
+            n *= 1.0 + floor((whole->hi[a] - whole->lo[a]) / edge);
+        fits = n <= TILES;
+        for (int a = 0; fits && a < dim; a++) {
+            c.n[a] = 1 + (size_t)((whole->hi[a] - whole->lo[a]) / edge);
+            c.scale[a] = 1.0 / edge;
+        }
+    }
+    return c;
+}
+
+static size_t cell_of(const struct cells *c, const struct cloud *cloud, size_t i)
+{
+    size_t at = 0;
+    for (int a = cloud->dim - 1; a >= 0; a--) {
+        const size_t k = (size_t)((cloud->x[a][i] - c->lo[a]) * c->scale[a]);
+        at = at * c->n[a] + (k < c->n[a] ? k : c->n[a] - 1);
+    }
+    return at;
+}
+
+/* Blocks of a cloud's particles; then its tiles, behind those there are: none of them is empty. */
+static size_t survey(const struct making *m, size_t cloud, struct tile *tile)
+{
+    const struct cloud *c = &m->job->cloud[cloud];
+    const double factor = m->job->factor * SLACK;
+    struct tile whole = tile_none(c->dim);
+    size_t n = 0;
+    for (size_t b = m->first_block[cloud]; b < m->first_block[cloud + 1]; b++) {
+        const size_t first = (b - m->first_block[cloud]) * BLOCK;
+        m->block[b] = tile_of(c, first, first + BLOCK < c->n ? first + BLOCK : c->n, factor);
+        tile_join(&whole, &m->block[b]);
+    }
+    if (!c->n)
+        return 0;
+    const struct cells cells = cells_over(&whole, c->dim);
+    const size_t all = cells.n[0] * cells.n[1] * cells.n[2];
+    for (size_t t = 0; t < all; t++)
+        tile[t] = tile_none(c->dim);
+    for (size_t i = 0; i < c->n; i++)
+        tile_add(&tile[cell_of(&cells, c, i)], c, i, factor);
+    for (size_t t = 0; t < all; t++)
+        if (tile[t].lo[0] <= tile[t].hi[0])
+            tile[n++] = tile[t];
+    return n;
+}
+
 /* What all ranks know of each other. */
 static int introduce(struct making *m, struct error *e)
 {
@@ -189,21 +272,30 @@ static int introduce(struct making *m, struct error *e)
         struct tile tile;
         uint64_t n;
     } *mine = calloc(n * (ranks + 1), sizeof *mine), *all = mine + n;
+    size_t blocks = 0;
     m->whole = malloc(ranks * n * sizeof *m->whole + 1);
-    m->n_particle = malloc(ranks * n * sizeof *m->n_particle + 1);
-    if (!mine || !m->whole || !m->n_particle) {
+    m->n_tile = malloc(ranks * n * sizeof *m->n_tile + 1);
+    for (size_t k = 0; k < n; k++) {
+        m->first_block[k] = blocks;
+        blocks += (m->job->cloud[k].n + BLOCK - 1) / BLOCK;
+    }
+    m->first_block[n] = blocks;
+    m->block = malloc((blocks + 1) * sizeof *m->block);
+    m->mine = malloc((n * TILES + 1) * sizeof *m->mine);
+    if (!mine || !m->whole || !m->n_tile || !m->block || !m->mine) {
         free(mine);
         return error_memory(e, "the domain", ranks * n * sizeof *mine);
     }
     for (size_t k = 0; k < n; k++) {
-        const struct cloud *c = &m->job->cloud[k];
-        mine[k].tile = tile_of(c, 0, c->n, m->job->factor * SLACK);
-        mine[k].n = c->n;
+        mine[k].n = survey(m, k, m->mine + m->n_mine);
+        mine[k].tile = tile_none(m->job->cloud[k].dim);
+        for (size_t t = 0; t < mine[k].n; t++)
+            tile_join(&mine[k].tile, &m->mine[m->n_mine++]);
     }
     const int status = wire_gather(w, mine, n * sizeof *mine, all, e);
     for (size_t k = 0; !status && k < ranks * n; k++) {
         m->whole[k] = all[k].tile;
-        m->n_particle[k] = all[k].n;
+        m->n_tile[k] = all[k].n;
     }
     if (!status)
         free(mine);
@@ -238,11 +330,13 @@ struct candidates {
 
 static bool wanted(const struct making *m, const struct candidates *c, size_t i, unsigned code)
 {
+    struct tile point;
     for (size_t k = 0; k < c->n; k++) {
         const struct halo_want *w = c->want[k];
-        const struct cloud *at = cloud_at(m, w->frame, w->src);
-        struct tile point = tile_of(at, i, i + 1, m->job->factor * SLACK);
-        point = code ? tile_image(m->job->box, point, code) : point;
+        if (k == 0 || w != c->want[k - 1]) {
+            point = tile_of(cloud_at(m, w->frame, w->src), i, i + 1, m->job->factor * SLACK);
+            point = code ? tile_image(m->job->box, point, code) : point;
+        }
         if (near(&point, c->tile[k], w->symmetric))
             return true;
     }
@@ -250,24 +344,31 @@ static bool wanted(const struct making *m, const struct candidates *c, size_t i,
 }
 
 /* Of a block of an array's sources, as one image: those that the peer needs. */
-static int look_at_block(const struct making *m, struct halo_part *part, size_t array, size_t first,
-                         size_t end, unsigned code, struct candidates *c, struct error *e)
+static int look_at_block(const struct making *m, struct halo_peer *q, size_t array, size_t block,
+                         unsigned code, struct candidates *c, struct error *e)
 {
+    struct halo_part *part = &q->part[array];
+    const struct tile *whole = m->whole + (size_t)q->rank * m->n_cloud;
+    size_t end = 0;
     c->n = 0;
     for (size_t k = 0; k < m->job->n_want; k++) {
         const struct halo_want *w = &m->job->want[k];
-        const struct cloud *src = cloud_at(m, w->frame, w->src);
-        const size_t dst = w->frame * m->job->n_array + w->dst;
-        if (w->src != array || (w->frame && code) || src->n == 0)
+        const size_t at = w->frame * m->job->n_array, dst = at + w->dst, src = at + w->src;
+        if (w->src != array || (w->frame && code) ||
+            block >= m->first_block[src + 1] - m->first_block[src])
             continue;
-        struct tile block = tile_of(src, first, end, m->job->factor * SLACK);
-        block = code ? tile_image(m->job->box, block, code) : block;
-        for (size_t t = m->first[dst]; t < m->first[dst + 1]; t++)
-            if (near(&block, &m->tile[t], w->symmetric)) {
+        struct tile all = m->block[m->first_block[src] + block];
+        all = code ? tile_image(m->job->box, all, code) : all;
+        for (size_t t = m->first[dst];
+             near(&all, &whole[dst], w->symmetric) && t < m->first[dst + 1]; t++)
+            if (near(&all, &m->tile[t], w->symmetric)) {
                 c->tile[c->n] = &m->tile[t];
                 c->want[c->n++] = w;
+                end = m->job->cloud[src].n;
             }
     }
+    const size_t first = block * BLOCK;
+    end = first + BLOCK < end ? first + BLOCK : end;
     for (size_t i = first; c->n && i < end; i++)
         if (wanted(m, c, i, code) && part_add(part, i, code, e))
             return -1;
@@ -285,10 +386,9 @@ static int look_for_peer(const struct making *m, struct halo_peer *q, struct err
         size_t n = 0;
         for (size_t f = 0; f < m->job->n_frame; f++)
             n = cloud_at(m, f, a)->n > n ? cloud_at(m, f, a)->n : n;
-        for (size_t first = 0; !status && first < n; first += BLOCK)
+        for (size_t b = 0; !status && b * BLOCK < n; b++)
             for (size_t k = self; !status && k < m->n_code; k++)
-                status = look_at_block(m, &q->part[a], a, first,
-                                       first + BLOCK < n ? first + BLOCK : n, m->code[k], &c, e);
+                status = look_at_block(m, q, a, b, m->code[k], &c, e);
     }
     free(c.tile);
     free(c.want);
@@ -302,20 +402,7 @@ static void lay_tiles(const struct making *m, int rank, size_t *first)
 {
     first[0] = 0;
     for (size_t k = 0; k < m->n_cloud; k++)
-        first[k + 1] = first[k] + tiles_of(m->n_particle[(size_t)rank * m->n_cloud + k]);
-}
-
-static void fill_tiles(const struct making *m, const size_t *first, struct tile *tile)
-{
-    for (size_t k = 0; k < m->n_cloud; k++) {
-        const struct cloud *c = &m->job->cloud[k];
-        const size_t share = share_of(c->n);
-        for (size_t t = first[k]; t < first[k + 1]; t++) {
-            const size_t begin = (t - first[k]) * share;
-            tile[t] = tile_of(c, begin, begin + share < c->n ? begin + share : c->n,
-                              m->job->factor * SLACK);
-        }
-    }
+        first[k + 1] = first[k] + m->n_tile[(size_t)rank * m->n_cloud + k];
 }
 
 static int find_peers(struct making *m, struct error *e)
@@ -336,17 +423,10 @@ static int trade_tiles(struct making *m, struct tile **tile, struct error *e)
     const int me = wire_rank(h->wire);
     size_t n_send = 0, n_receive = 0;
     struct parcel *receive = h->parcel + h->n_peer;
-    struct tile *mine = NULL;
-    lay_tiles(m, me, m->first);
-    const size_t n_mine = m->first[m->n_cloud];
-    mine = malloc((n_mine + 1) * sizeof *mine);
-    if (!mine)
-        return error_memory(e, "the domain", n_mine * sizeof *mine);
-    fill_tiles(m, m->first, mine);
     for (size_t k = 0; k < h->n_peer; k++) {
         const int r = h->peer[k].rank;
         if (r != me && ranks_near(m, r, me))
-            h->parcel[n_send++] = (struct parcel){r, mine, n_mine * sizeof *mine};
+            h->parcel[n_send++] = (struct parcel){r, m->mine, m->n_mine * sizeof *m->mine};
         if (!ranks_near(m, me, r))
             continue;
         lay_tiles(m, r, m->first);
@@ -355,13 +435,12 @@ static int trade_tiles(struct making *m, struct tile **tile, struct error *e)
         if (!tile[k])
             return error_memory(e, "the domain", n * sizeof **tile);
         if (r == me)
-            memcpy(tile[k], mine, n * sizeof **tile);
+            memcpy(tile[k], m->mine, n * sizeof **tile);
         else
             receive[n_receive++] = (struct parcel){r, tile[k], n * sizeof **tile};
     }
     if (wire_begin(h->wire, h->parcel, n_send, receive, n_receive, e) || wire_finish(h->wire, e))
         return -1;
-    free(mine);
     return 0;
 }
 
@@ -485,15 +564,20 @@ int halo_make(struct halo *h, const struct halo_job *job, struct ghosts *own, st
 {
     struct making m = {.h = h, .job = job, .n_cloud = job->n_frame * job->n_array};
     m.n_code = codes_of(job->box, m.code);
-    m.first = calloc(m.n_cloud + 1, sizeof *m.first);
+    m.first = calloc(2 * (m.n_cloud + 1), sizeof *m.first);
+    m.first_block = m.first + m.n_cloud + 1;
     int status = m.first ? 0 : error_memory(e, "the domain", m.n_cloud);
     if (!status)
         status = introduce(&m, e) || find_peers(&m, e) || look(&m, e) || take_own(h, own, e) ||
                          trade_counts(h, e) || lay_ghosts(h, own, e) || trade_codes(h, e)
                      ? -1
                      : 0;
+    if (status)
+        return -1; /* messages may still be under way: what they use is not given back */
     free(m.first);
+    free(m.block);
+    free(m.mine);
     free(m.whole);
-    free(m.n_particle);
-    return status;
+    free(m.n_tile);
+    return 0;
 }

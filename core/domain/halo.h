@@ -74,4 +74,18 @@ int halo_begin(struct halo *h, const struct box *box, const struct halo_column *
                struct error *e);
 int halo_finish(struct halo *h, const struct halo_column *c, size_t n, struct error *e);
 
+/* -- Columns that stand elsewhere -------- */
+
+/* Of an array: what goes to all peers, one after the other, and what comes from them, behind its own images. */
+size_t halo_sent(const struct halo *h, size_t array);
+size_t halo_received(const struct halo *h, size_t array);
+/* Numbers of `size` bytes that are packed already. */
+struct halo_plane {
+    size_t array, size;
+    const char *out; /* [halo_sent] */
+    char *in;        /* [halo_received] */
+};
+/* As halo_begin and halo_finish. All ranks give planes of the same arrays and sizes. halo_planes.c */
+int halo_trade(struct halo *h, const struct halo_plane *p, size_t n, struct error *e);
+
 #endif

@@ -22,6 +22,19 @@ struct partition {
     size_t n;
 };
 
+/* A place as it is shown to Zoltan: the axes a little askew. Particles of a lattice stand in planes, and a cut
+ * that runs along one has all of it on one side; so it divides it. */
+static void askew(int dim, const double *x, double *out)
+{
+    static const double slope[3][3] = {
+        {1.0, 0.0137, 0.0071}, {-0.0137, 1.0, 0.0113}, {-0.0071, -0.0113, 1.0}};
+    for (int a = 0; a < dim; a++) {
+        out[a] = 0.0;
+        for (int b = 0; b < dim; b++)
+            out[a] += slope[a][b] * x[b];
+    }
+}
+
 static int ask_dimensions(void *data, int *status)
 {
     *status = ZOLTAN_OK;
@@ -55,9 +68,12 @@ static void ask_places(void *data, int n_global, int n_local, int n, ZOLTAN_ID_P
     (void)n_global;
     (void)n_local;
     (void)global;
-    for (int k = 0; k < n; k++)
+    for (int k = 0; k < n; k++) {
+        double at[3];
         for (int a = 0; a < dim; a++)
-            x[k * dim + a] = p->x[a][local[k]];
+            at[a] = p->x[a][local[k]];
+        askew(dim, at, x + k * dim);
+    }
     *status = ZOLTAN_OK;
 }
 
@@ -68,7 +84,7 @@ static int set(struct partition *p, enum partitioner which)
                                    {"LB_METHOD", method[which]}, {"NUM_GID_ENTRIES", "1"},
                                    {"NUM_LID_ENTRIES", "1"},     {"OBJ_WEIGHT_DIM", "1"},
                                    {"RETURN_LISTS", "NONE"},     {"KEEP_CUTS", "1"},
-                                   {"IMBALANCE_TOL", "1.01"}};
+                                   {"IMBALANCE_TOL", "1.002"}};
     int status = ZOLTAN_OK;
     for (size_t k = 0; k < sizeof list / sizeof list[0] && status == ZOLTAN_OK; k++)
         status = Zoltan_Set_Param(p->zoltan, list[k][0], list[k][1]);
@@ -125,8 +141,7 @@ int partition_owner(const struct partition *p, const double *x)
 {
     double at[3] = {0.0, 0.0, 0.0};
     int rank = 0, part = 0;
-    for (int a = 0; a < p->dim; a++)
-        at[a] = x[a];
+    askew(p->dim, x, at);
     if (Zoltan_LB_Point_PP_Assign(p->zoltan, at, &rank, &part) != ZOLTAN_OK)
         return 0;
     return rank;

@@ -16,7 +16,7 @@
 #define PIECE_MOST (1 << 30) /* of a message: MPI counts in ints */
 
 struct wire {
-    int rank, size;
+    int rank, size, host_rank, host_size;
     MPI_Comm comm, alarm;
     MPI_Datatype term; /* of wire_reduce */
     MPI_Op merge;
@@ -51,6 +51,17 @@ static int failed(struct error *e)
     return error_set(e, EXIT_RUN, "MPI fails: the ranks no longer hear each other");
 }
 
+/* Who shares a machine. */
+static int look_around(struct wire *w)
+{
+    MPI_Comm host;
+    if (MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, w->rank, MPI_INFO_NULL, &host))
+        return -1;
+    MPI_Comm_rank(host, &w->host_rank);
+    MPI_Comm_size(host, &w->host_size);
+    return MPI_Comm_free(&host) ? -1 : 0;
+}
+
 int wire_open(struct wire **out, struct error *e)
 {
     int rank, size;
@@ -60,9 +71,11 @@ int wire_open(struct wire **out, struct error *e)
     ranks_count(&rank, &size);
     w->rank = rank;
     w->size = size;
+    w->host_size = 1;
     if (size == 1)
         return 0;
-    if (MPI_Comm_dup(MPI_COMM_WORLD, &w->comm) || MPI_Comm_dup(MPI_COMM_WORLD, &w->alarm) ||
+    if (look_around(w) || MPI_Comm_dup(MPI_COMM_WORLD, &w->comm) ||
+        MPI_Comm_dup(MPI_COMM_WORLD, &w->alarm) ||
         MPI_Type_contiguous((int)sizeof(struct term), MPI_BYTE, &w->term) ||
         MPI_Type_commit(&w->term) || MPI_Op_create(merge, 1, &w->merge))
         return failed(e);
@@ -94,6 +107,12 @@ int wire_rank(const struct wire *w)
 int wire_size(const struct wire *w)
 {
     return w ? w->size : 1;
+}
+
+void wire_host(const struct wire *w, int *rank, int *ranks)
+{
+    *rank = w ? w->host_rank : 0;
+    *ranks = w ? w->host_size : 1;
 }
 
 struct wire_count wire_count(const struct wire *w)
@@ -403,6 +422,13 @@ int wire_size(const struct wire *w)
 {
     (void)w;
     return 1;
+}
+
+void wire_host(const struct wire *w, int *rank, int *ranks)
+{
+    (void)w;
+    *rank = 0;
+    *ranks = 1;
 }
 
 void wire_alarm(struct wire *w)

@@ -20,6 +20,8 @@ int wire_open(struct wire **w, struct error *e);
 void wire_close(struct wire *w);
 int wire_rank(const struct wire *w);
 int wire_size(const struct wire *w);
+/* This rank among those of its machine, and how many they are. */
+void wire_host(const struct wire *w, int *rank, int *ranks);
 /* This rank has failed: the others stop waiting. Once is enough. */
 void wire_alarm(struct wire *w);
 /* After an alarm, when all have heard of it (ranks_agree): all ranks call it. What was under way is given up, and

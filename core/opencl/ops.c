@@ -26,6 +26,8 @@ static const struct {
     [K_REFRESH_POSITION] = {"refresh_position", "ghosts"},
     [K_REFRESH_WIDE] = {"refresh_wide", "ghosts"},
     [K_REFRESH_NARROW] = {"refresh_narrow", "ghosts"},
+    [K_PACK_WIDE] = {"pack_wide", "pack"},
+    [K_PACK_NARROW] = {"pack_narrow", "pack"},
 };
 
 /* A set's texts: what is for LANES particles once for one and once for eight. */

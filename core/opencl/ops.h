@@ -70,6 +70,30 @@ int ops_ghosts_make(struct ops *o, struct arena *a, struct ops_ghosts *g, const 
 int ops_ghosts_refresh(struct ops *o, struct arena *a, const struct ops_ghosts *g,
                        const struct box *box, int column, struct error *e);
 
+/* -- Other ranks -------- */
+
+/* Builds what these need, at once. */
+int ops_need_halo(struct ops *o, struct error *e);
+/* The same as they were found elsewhere: n of them. */
+int ops_ghosts_set(struct ops *o, struct ops_ghosts *g, const uint32_t *parent,
+                   const uint8_t *image, size_t n, struct error *e);
+/* Real particles that others want, and as which images. Begin with zeros. */
+struct ops_sends {
+    struct device_buffer index, image; /* uint, uchar */
+    size_t n;
+};
+void ops_sends_release(struct ops *o, struct ops_sends *s);
+int ops_sends_set(struct ops *o, struct ops_sends *s, const uint32_t *index, const uint8_t *image,
+                  size_t n, struct error *e);
+/* Bytes of n elements of a column where columns stand one behind the other: whole words. */
+size_t ops_packed(const struct arena *a, int column, size_t n);
+/* What the others want of a column: component by component, from byte `at` of `out` on. */
+int ops_pack(struct ops *o, struct arena *a, const struct ops_sends *s, const struct box *box,
+             int column, struct device_buffer *out, size_t at, struct error *e);
+/* What stands like that becomes that of n ghosts, from `first` on. Mirrors are not touched. */
+int ops_unpack(struct ops *o, struct arena *a, int column, size_t first, size_t n,
+               const struct device_buffer *in, size_t at, struct error *e);
+
 /* -- Lists: are they still right? -------- */
 
 /* Where particles stood and how far they reached when lists were made: skin_keep, in doubles. Begin with

@@ -30,6 +30,8 @@ enum ops_kernel {
     K_REFRESH_POSITION,
     K_REFRESH_WIDE,
     K_REFRESH_NARROW,
+    K_PACK_WIDE,
+    K_PACK_NARROW,
     OPS_KERNELS
 };
 
@@ -100,6 +102,11 @@ static inline int ops_bring(struct arena *a, int column, struct error *e)
 
 /* ops_open with work items of `wide` particles, 8 or 1, whatever suits the device. */
 int ops_open_wide(struct ops **out, struct device *d, int dim, size_t wide, struct error *e);
+
+/* The box in the device's own words; there already, unless it is another one. In ops_sides.c, as the next. */
+int ops_put_sides(struct ops *o, const struct box *box, struct error *e);
+/* Image bits that turn each component of a column, a byte each. */
+void ops_turning(const struct box *box, const struct column *c, int dim, uint64_t turning[2]);
 
 /* Programs are gone; in ops_advance.c. */
 void ops_forget_programs(struct ops *o);

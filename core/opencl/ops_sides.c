@@ -27,8 +27,7 @@ static struct sides sides_of(const struct ops *o, const struct box *box)
     return s;
 }
 
-/* The box in the device's own words; there already, unless it is another one. */
-static int put_sides(struct ops *o, const struct box *box, struct error *e)
+int ops_put_sides(struct ops *o, const struct box *box, struct error *e)
 {
     const struct sides s = sides_of(o, box);
     if (o->sides.mem && o->box && memcmp(o->box, &s, sizeof s) == 0)
@@ -159,7 +158,7 @@ int ops_wrap(struct ops *o, struct arena *a, const struct box *box, size_t *move
     if (!any || n == 0)
         return 0;
     const int x = find_position(a, e);
-    if (x < 0 || bring(a, e) || put_sides(o, box, e) || put_table(o, a, &w, e))
+    if (x < 0 || bring(a, e) || ops_put_sides(o, box, e) || put_table(o, a, &w, e))
         return -1;
     const uint32_t position = ops_slot(a, x);
     if ((moved && device_fill(o->d, &o->words, at, 0, sizeof count, e)) ||
@@ -245,7 +244,7 @@ int ops_ghosts_make(struct ops *o, struct arena *a, struct ops_ghosts *g, const 
 {
     const int x = find_position(a, e), h = particles_find(a->p, "h");
     g->n = 0;
-    if (x < 0 || arena_resize(a, a->n, 0, e) || ops_bring(a, x, e) || put_sides(o, box, e))
+    if (x < 0 || arena_resize(a, a->n, 0, e) || ops_bring(a, x, e) || ops_put_sides(o, box, e))
         return -1;
     for (int axis = 0; axis < o->dim && a->n > 0; axis++) {
         const bool pair = sides_periodic(box, axis);
@@ -262,9 +261,7 @@ int ops_ghosts_make(struct ops *o, struct arena *a, struct ops_ghosts *g, const 
 
 /* -- Their columns -------- */
 
-/* Image bits that turn each component, a byte each. */
-static void turning_images(const struct box *box, const struct column *c, int dim,
-                           uint64_t turning[2])
+void ops_turning(const struct box *box, const struct column *c, int dim, uint64_t turning[2])
 {
     turning[0] = turning[1] = 0;
     for (uint32_t k = 0; k < c->ncomp; k++)
@@ -284,13 +281,13 @@ int ops_ghosts_refresh(struct ops *o, struct arena *a, const struct ops_ghosts *
     if (n_ghost == 0)
         return 0;
     if (strcmp(c->name, "x") == 0)
-        return put_sides(o, box, e)
+        return ops_put_sides(o, box, e)
                    ? -1
                    : OPS_LAUNCH(o, K_REFRESH_POSITION, n_ghost, e, DEVICE_BUFFER(&a->wide),
                                 DEVICE_VALUE(plane), DEVICE_VALUE(at->slot),
                                 DEVICE_BUFFER(&o->sides), DEVICE_VALUE(n), DEVICE_VALUE(n_ghost),
                                 DEVICE_BUFFER(&g->parent), DEVICE_BUFFER(&g->image));
-    turning_images(box, c, o->dim, turning);
+    ops_turning(box, c, o->dim, turning);
     if (at->size == 4)
         return OPS_LAUNCH(o, K_REFRESH_NARROW, n_ghost, e, DEVICE_BUFFER(&a->narrow),
                           DEVICE_VALUE(plane), DEVICE_VALUE(at->slot), DEVICE_VALUE(c->ncomp),

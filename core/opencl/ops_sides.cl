@@ -234,3 +234,40 @@ kernel void refresh_narrow(global uint *narrow, ulong plane, uint slot, uint nco
         x[n + q] = x[parent[q]] ^ sign << 31;
     }
 }
+
+/* -- For other ranks -------- */
+
+/* Real particles' values as they are in images, component by component, from element `at` of `out` on. position:
+ * whether the column is. */
+kernel void pack_wide(global const ulong *wide, ulong plane, uint slot, uint ncomp, ulong turning,
+                      ulong turning_8, constant struct sides *s, uint position, ulong n,
+                      global const uint *index, global const uchar *image, global ulong *out,
+                      ulong at)
+{
+    const ulong q = get_global_id(0);
+    if (q >= n)
+        return;
+    for (uint k = 0; k < ncomp; k++) {
+        const ulong value = wide[at_of(slot, k, plane) + index[q]];
+        const uint across = image[q] >> 2 * k & 3u;
+        const ulong sign = turned((k < 8 ? turning >> 8 * k : turning_8) & 255u, image[q]);
+        if (position)
+            out[at + k * n + q] =
+                across ? as_ulong(image_of(s, k, across, as_double(value))) : value;
+        else
+            out[at + k * n + q] = value ^ sign << 63;
+    }
+}
+
+kernel void pack_narrow(global const uint *narrow, ulong plane, uint slot, uint ncomp,
+                        ulong turning, ulong turning_8, ulong n, global const uint *index,
+                        global const uchar *image, global uint *out, ulong at)
+{
+    const ulong q = get_global_id(0);
+    if (q >= n)
+        return;
+    for (uint k = 0; k < ncomp; k++) {
+        const uint sign = (uint)turned((k < 8 ? turning >> 8 * k : turning_8) & 255u, image[q]);
+        out[at + k * n + q] = narrow[at_of(slot, k, plane) + index[q]] ^ sign << 31;
+    }
+}

@@ -6,6 +6,7 @@
  * doubles: of what is held in floats, a chunk's worth is laid out for the call and put back after it. */
 #include "run/chunks.h"
 #include "run/closing.h"
+#include "run/domain.h"
 #include <omp.h>
 #include <stdlib.h>
 #include <string.h>
@@ -262,15 +263,18 @@ static sph_status do_chunk(struct work *w, size_t from, size_t to, size_t k)
     return status;
 }
 
-/* Stages [from, to) of every chunk. */
-static int do_stages(struct work *w, size_t from, size_t to, struct error *e)
+/* Stages [from, to) of chunks [begin, end). */
+static int do_chunks(struct work *w, size_t from, size_t to, size_t begin, size_t end,
+                     struct error *e)
 {
     sph_status worst = SPH_OK;
-    const long n = (long)w->ranges->n;
-    const int threads = w->p->serial || n < 2 ? 1 : w->r->threads;
+    const int threads = w->p->serial || end - begin < 2 ? 1 : w->r->threads;
+    const bool pokes = begin < w->ranges->near && w->ranges->near < w->ranges->n;
 #pragma omp parallel for schedule(dynamic) num_threads(threads)
-    for (long k = 0; k < n; k++) {
-        const sph_status status = do_chunk(w, from, to, (size_t)k);
+    for (size_t k = begin; k < end; k++) {
+        const sph_status status = do_chunk(w, from, to, k);
+        if (pokes && omp_get_thread_num() == 0)
+            run_domain_poke(w->r);
         if (status != SPH_OK) {
 #pragma omp critical(pass_status)
             if (status < worst)
@@ -278,6 +282,17 @@ static int do_stages(struct work *w, size_t from, size_t to, struct error *e)
         }
     }
     return worst == SPH_OK ? 0 : failed(w->r, w->p, worst, e);
+}
+
+/* Stages [from, to) of every chunk. */
+static int do_stages(struct work *w, size_t from, size_t to, struct error *e)
+{
+    const struct ranges *a = w->ranges;
+    if (do_chunks(w, from, to, 0, a->near, e))
+        return -1;
+    if (a->near == a->n)
+        return 0;
+    return pass_arrive(w->r, w->p, e) || do_chunks(w, from, to, a->near, a->n, e) ? -1 : 0;
 }
 
 /* -- Batches ------------------------------------------------------------------------------------ */

@@ -76,13 +76,25 @@ int closing_begin(struct closing *c, struct run *r, const struct pass *p, size_t
     if (!c->part || !c->extreme)
         return error_memory(e, "a pass", chunks * c->n_reduced * sizeof *c->extreme);
     find_parts(c, c->part);
-    /* Ghosts take the values that sweeps are to see, before they are corrected. */
-    for (size_t k = 0; k < c->n_corrected; k++) {
-        const struct plan_array *a = &r->plan->array[p->dst.array];
-        if (run_refresh(r, p->dst.array, (int)(c->part[k].y - a->p.column), e))
-            return -1;
-    }
     return 0;
+}
+
+int closing_ask(struct run *r, const struct pass *p, struct error *e)
+{
+    const struct plan_array *a = &r->plan->array[p->dst.array];
+    struct closing c = {.r = r, .p = p};
+    int status = 0;
+    find_parts(&c, NULL);
+    if (c.n_corrected == 0)
+        return 0;
+    c.part = malloc((c.n_corrected + c.n_watched + c.n_reduced) * sizeof *c.part);
+    if (!c.part)
+        return error_memory(e, "a pass", c.n_corrected * sizeof *c.part);
+    find_parts(&c, c.part);
+    for (size_t k = 0; !status && k < c.n_corrected; k++)
+        status = run_refresh_own(r, p->dst.array, (int)(c.part[k].y - a->p.column), e);
+    free(c.part);
+    return status;
 }
 
 void closing_free(struct closing *c)

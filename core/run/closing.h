@@ -17,6 +17,9 @@ struct closing {
     int bad; /* a rate is not finite */
 };
 
+/* Before what a pass reads is sent: of what it corrects, ghosts take the values that sweeps are to see, which are
+ * those before. */
+int closing_ask(struct run *r, const struct pass *p, struct error *e);
 /* For all particles of the pass's destination, in `chunks` chunks. */
 int closing_begin(struct closing *c, struct run *r, const struct pass *p, size_t chunks,
                   struct error *e);

@@ -2,9 +2,11 @@
  * integrator's operations launched. Data stay there; what comes back at every evaluation is a handful of
  * numbers. */
 #include "run/device.h"
+#include "run/domain.h"
 
 #include "plan/device_memory.h"
 #include "run/chunks.h"
+#include "run/domain.h"
 #include "run/watch.h"
 
 #include <math.h>
@@ -61,10 +63,11 @@ int run_device_open(struct run *r, struct error *e)
 
     if (!d)
         return error_memory(e, "the run on a device", sizeof(*d));
-    if (device_open_part(&d->d, plan->scene->device.number, (unsigned)r->threads, e) ||
+    if (run_device_choose(r, e) || device_open_part(&d->d, d->number, (unsigned)r->threads, e) ||
         make_tables(r, e) || make_stages(r, e) || ops_open(&d->ops, d->d, plan->dim, e) ||
         ops_need_sides(d->ops, &plan->scene->box, e) || look_open(&d->look, d->d, plan->dim, e) ||
-        device_search_open(&d->search, d->d, plan->dim, plan->manager, e))
+        device_search_open(&d->search, d->d, plan->dim, plan->manager, e) ||
+        run_device_domain_open(r, e))
         return -1;
     for (size_t a = 0; a < plan->n_array; a++)
         if (arena_init(&d->arena[a], d->d, &plan->array[a].p, e) ||
@@ -85,6 +88,7 @@ void run_device_close(struct run *r)
         return;
     kernels_free(d->kernels);
     run_device_cost_close(r);
+    run_device_domain_close(r);
     for (size_t k = 0; d->list && k < r->plan->n_list; k++)
         device_list_release(d->d, &d->list[k]);
     for (size_t k = 0; d->skin && d->ops && k < n * r->plan->n_frame; k++)
@@ -157,14 +161,18 @@ static int mirror(struct run *r, size_t array, int column, struct error *e)
     return status;
 }
 
+/* In two rounds: what other ranks have to send comes in between. */
+enum round { COLUMNS, MIRRORS };
+
 static int column_here(struct run *r, size_t array, int column, bool source, bool mirrored,
-                       struct error *e)
+                       enum round round, struct error *e)
 {
     if (column < 0)
         return 0;
+    if (round == MIRRORS)
+        return mirrored ? mirror(r, array, column, e) : 0;
     return arena_put(&r->device->arena[array], column, e) ||
-                   (source && run_device_refresh(r, array, column, e)) ||
-                   (mirrored && mirror(r, array, column, e))
+                   (source && run_device_refresh(r, array, column, e))
                ? -1
                : 0;
 }
@@ -174,7 +182,7 @@ static int column_here(struct run *r, size_t array, int column, bool source, boo
 /* All that the columns of a binding must hold before its pass runs. Of destinations sweeps read the position alone
  * in a mirror, of sources all that they read (kernels_sweep.c). */
 static int binding_here(struct run *r, const struct pass *p, const struct binding *b, bool source,
-                        struct error *e)
+                        enum round round, struct error *e)
 {
     const struct plan_array *a = &r->plan->array[b->array];
     const bool mirrored = p->real == SPH_F32;
@@ -182,31 +190,39 @@ static int binding_here(struct run *r, const struct pass *p, const struct bindin
     for (uint32_t k = 0; k < p->use.item->props.count; k++) {
         const sph_prop *prop = list_at(&p->use.item->props, k);
         const bool read = source && (prop->access & SPH_SRC_READ);
-        if (column_here(r, b->array, b->column[k], source, mirrored && read, e))
+        if (column_here(r, b->array, b->column[k], source, mirrored && read, round, e))
             return -1;
     }
     if (p->shape == SPH_POINT)
         return 0;
     if (p->frame && column_here(r, b->array, particles_find(&a->p, r->plan->frame[p->frame].name),
-                                source, false, e))
+                                source, false, round, e))
         return -1;
-    return column_here(r, b->array, a->position, source, mirrored, e) ||
-                   column_here(r, b->array, a->smoothing, source, mirrored && source, e)
+    return column_here(r, b->array, a->position, source, mirrored, round, e) ||
+                   column_here(r, b->array, a->smoothing, source, mirrored && source, round, e)
                ? -1
                : 0;
 }
 
-static int make_ready(struct run *r, const struct stage *s, struct error *e)
+static int bindings_here(struct run *r, const struct stage *s, enum round round, struct error *e)
 {
     for (size_t k = 0; k < s->n; k++) {
         const struct pass *p = &r->plan->pass[s->pass[k]];
         for (size_t q = 0; q < p->n_src; q++)
-            if (binding_here(r, p, &p->src[q], true, e))
+            if (binding_here(r, p, &p->src[q], true, round, e))
                 return -1;
-        if (binding_here(r, p, &p->dst, false, e))
+        if (binding_here(r, p, &p->dst, false, round, e))
             return -1;
     }
     return 0;
+}
+
+static int make_ready(struct run *r, const struct stage *s, struct error *e)
+{
+    return bindings_here(r, s, COLUMNS, e) || run_device_trade(r, e) ||
+                   bindings_here(r, s, MIRRORS, e)
+               ? -1
+               : 0;
 }
 
 /* A changed h or place makes the lists suspect. */
@@ -268,20 +284,23 @@ static int sweep(struct run *r, size_t k, uint32_t number, struct error *e)
     return status;
 }
 
-/* Sweeps until none of its destinations asks for another. */
+/* Sweeps until none of its destinations asks for another, on any rank. */
 static int iterate(struct run *r, size_t k, struct error *e)
 {
     const struct stage *s = &r->device->stage[k];
     const struct pass *p = &r->plan->pass[s->pass[0]];
     const struct arena *arena = &r->device->arena[s->array];
     const uint64_t all = (arena->n + SPH_LANES - 1) / SPH_LANES;
-    uint64_t busy = all;
+    uint64_t busy = all, wanted = all > 0 || run_shared(r);
 
-    for (uint32_t number = 0; busy > 0; number++) {
+    for (uint32_t number = 0; wanted > 0; number++) {
         if (sweep(r, k, number, e))
             return -1;
-        run_device_count(r, k, (double)busy / (double)all);
+        run_device_count(r, k, all ? (double)busy / (double)all : 0.0);
         if (look_groups(r->device->look, arena, p->unfinished, &busy, e))
+            return -1;
+        wanted = busy;
+        if (run_share_count(r, &wanted, e))
             return -1;
         if (number + 1 >= p->max_sweeps) {
             r->cost.unfinished += busy;
@@ -316,6 +335,18 @@ static int begin_reductions(struct run *r, const struct stage *s, struct error *
     return 0;
 }
 
+/* What this rank's reductions have come to becomes that of all. */
+static int share_reductions(const struct run *r, double *value, struct error *e)
+{
+    const struct run_device *d = r->device;
+    uint32_t op[OPS_RESULTS];
+
+    for (size_t i = 0; i < r->plan->n_reduction; i++)
+        if (d->slot[i] != NO_SLOT)
+            op[d->slot[i]] = r->plan->reduction[i].declared->op;
+    return d->n_slot ? run_share_numbers(r, value, op, d->n_slot, e) : 0;
+}
+
 int run_device_collect(struct run *r, struct error *e)
 {
     struct run_device *d = r->device;
@@ -329,6 +360,8 @@ int run_device_collect(struct run *r, struct error *e)
     status = ops_results(d->ops, value, d->n_slot, &flags, e);
     if (!status && (flags & OPS_NOWHERE))
         status = error_set(e, EXIT_RUN, "a particle is nowhere, or left the domain");
+    if (!status)
+        status = share_reductions(r, value, e);
     for (size_t i = 0; i < r->plan->n_reduction; i++) {
         if (!status && d->slot[i] != NO_SLOT)
             r->reduced[i] = value[d->slot[i]];
@@ -356,7 +389,7 @@ static int run_stage(struct run *r, size_t k, struct error *e)
     const size_t before = device_span(r->device->d, SPAN_STAGES + 2 * k + 1);
     int status = prepare(r, s, e);
 
-    if (!status && r->device->arena[s->array].n > 0) {
+    if (!status && (r->device->arena[s->array].n > 0 || run_shared(r))) {
         status = s->iterates ? iterate(r, k, e) : sweep(r, k, 0, e);
         if (!status && !s->iterates)
             run_device_count(r, k, 1.0);
@@ -426,7 +459,10 @@ static int find_wrong(struct run *r, enum moment moment, struct error *e)
 
     if (look_at_all(r, moment, &wrong, e))
         return -1;
-    if (!wrong)
+    uint64_t any = wrong; /* all ranks look then: what they count they share */
+    if (run_share_count(r, &any, e))
+        return -1;
+    if (!any)
         return 0;
     if (run_device_fetch(r, e) || (moment == MOMENT_EVALUATE && watch_state(r, e)))
         return -1;
@@ -488,9 +524,10 @@ static int advance_array(struct run *r, size_t array, size_t from, size_t to, st
             if (rate->kept[s] >= 0 && arena_put(arena, rate->kept[s], e))
                 return -1;
     }
-    if ((r->left &&
-         ops_advance(r->device->ops, arena, a, r->op, n_op - r->left, n_op, r->left_dt, NULL, e)) ||
-        (to > from && ops_advance(r->device->ops, arena, a, r->op, from, to, r->dt, NULL, e)))
+    if (arena->n > 0 &&
+        ((r->left && ops_advance(r->device->ops, arena, a, r->op, n_op - r->left, n_op, r->left_dt,
+                                 NULL, e)) ||
+         (to > from && ops_advance(r->device->ops, arena, a, r->op, from, to, r->dt, NULL, e))))
         return -1;
     for (size_t q = 0; q < a->n_rate; q++) {
         const struct rate *rate = &a->rate[q];
@@ -510,53 +547,10 @@ int run_device_advance(struct run *r, size_t from, size_t to, struct error *e)
     int status = 0;
 
     for (size_t a = 0; !status && a < r->plan->n_array; a++)
-        if (r->plan->array[a].n_rate && r->device->arena[a].n > 0)
+        if (r->plan->array[a].n_rate && (r->device->arena[a].n > 0 || run_shared(r)))
             status = advance_array(r, a, from, to, e);
     device_span(r->device->d, before);
     r->left = 0;
     r->lists_suspect = true;
     return status;
-}
-
-/* -- Totals -------- */
-
-static void add_totals(struct totals *t, const struct look_totals *a)
-{
-    t->mass += a->mass;
-    t->kinetic += a->kinetic;
-    t->momentum_scale += a->momentum_scale;
-    t->angular_scale += a->angular_scale;
-    for (int c = 0; c < 3; c++) {
-        t->momentum[c] += a->momentum[c];
-        t->angular[c] += a->angular[c];
-    }
-}
-
-int run_device_totals(struct run *r, struct totals *t, struct error *e)
-{
-    for (size_t a = 0; a < r->plan->n_array; a++) {
-        const struct plan_array *pa = &r->plan->array[a];
-        struct arena *arena = &r->device->arena[a];
-        struct look_totals here;
-        if (arena_put(arena, pa->mass, e) || arena_put(arena, pa->position, e) ||
-            (pa->velocity >= 0 && arena_put(arena, pa->velocity, e)) ||
-            look_totals(r->device->look, arena, pa->mass, pa->position, pa->velocity, &here, e))
-            return -1;
-        add_totals(t, &here);
-    }
-    for (size_t i = 0; i < r->plan->n_reduction; i++) {
-        const struct reduction *q = &r->plan->reduction[i];
-        struct arena *arena = &r->device->arena[q->array];
-        const int mass = r->plan->array[q->array].mass;
-        double *sum = totals_of(t, q->declared->use), here = 0.0;
-        if (!sum)
-            continue;
-        if (arena_put(arena, mass, e) || arena_put(arena, q->column, e) ||
-            (arena->n &&
-             ops_reduce(r->device->ops, arena, q->column, 0, mass, q->declared->op, &here, e)))
-            return -1;
-        *sum += here;
-        t->has_energy = true;
-    }
-    return 0;
 }

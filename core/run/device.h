@@ -39,6 +39,13 @@ struct run_device {
     uint32_t n_slot;
     struct device_work *work; /* [stage] */
     double *told;             /* [span]: seconds that are in the run's costs already */
+    size_t number;            /* of the device */
+    /* On several ranks; device_domain.c. */
+    int *taken;             /* [rank]: the number of its device */
+    struct ops_sends *send; /* [array] */
+    struct device_buffer out, in;
+    char *packed; /* on the host: what goes, then what comes */
+    size_t packed_bytes;
 };
 #define NO_SLOT UINT32_MAX
 
@@ -53,7 +60,7 @@ int run_device_lists(struct run *r, bool within, struct error *e);
 int run_device_frame(struct run *r, size_t frame, struct error *e);
 int run_device_refresh(struct run *r, size_t array, int column, struct error *e);
 
-/* run_totals. */
+/* run_totals; device_totals.c. */
 int run_device_totals(struct run *r, struct totals *t, struct error *e);
 /* device_store.c: lists and ghosts into a checkpoint or out of it; of reading, after the host's particles. */
 int run_device_store(struct run *r, struct store *s, struct error *e);
@@ -66,9 +73,23 @@ int run_device_put(struct run *r, struct error *e);
 static inline void run_device_changed(struct run *r, size_t array, int column)
 {
     arena_written_here(&r->device->arena[array], column);
-    r->stale[array][column] = r->device->ghosts[array].n > 0;
+    r->stale[array][column] = r->domain || r->device->ghosts[array].n > 0;
     r->mirror_old[array][column] = MIRROR_OLD;
 }
+/* device_check.c. Which device this rank takes: that of the number given, else one of those like the first, which
+ * the ranks of a machine share in turn. */
+int run_device_choose(struct run *r, struct error *e);
+/* device_domain.c: on several ranks; on one they do nothing. */
+int run_device_domain_open(struct run *r, struct error *e);
+void run_device_domain_close(struct run *r);
+/* Particles go to where their places belong: by the host, which has them all for a while. */
+int run_device_move(struct run *r, struct error *e);
+/* Ghosts as the host finds them: who they are, places and smoothing lengths. */
+int run_device_halo(struct run *r, struct error *e);
+/* What was asked for (run_domain_ask) comes from the other ranks. */
+int run_device_trade(struct run *r, struct error *e);
+/* Adds to a particle's weight its pairs of a list, so many times. */
+void run_device_weigh(struct run *r, size_t list, double times, float *weight);
 /* device_cost.c. Of each stage; `part` of its destinations took part in a sweep. */
 int run_device_cost_open(struct run *r, struct error *e);
 void run_device_cost_close(struct run *r);

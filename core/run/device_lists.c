@@ -3,10 +3,12 @@
  * says it in the words that it has for its own runs. */
 #include "run/device.h"
 
+#include "run/domain.h"
 #include "run/frames.h"
 #include "run/watch.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static struct device_cloud cloud_of(const struct run *r, size_t array, size_t frame, bool ghosts)
@@ -49,6 +51,7 @@ static int places_there(struct run *r, struct error *e)
 static int host_says(struct run *r, struct error *e)
 {
     struct run_device *device = r->device;
+    struct run_domain *domain = r->domain;
     struct error why = {0};
     bool lost;
     int status = run_device_failed(r, &lost) ? -1 : run_device_fetch(r, &why);
@@ -56,9 +59,11 @@ static int host_says(struct run *r, struct error *e)
     if (status)
         return -1;
     r->device = NULL;
+    r->domain = NULL; /* the other ranks do not take part */
     r->lists_made = false;
     status = run_lists(r, true, &why);
     r->device = device;
+    r->domain = domain;
     for (size_t a = 0; a < r->plan->n_array; a++)
         if (particles_resize(&r->plan->array[a].p, r->plan->array[a].p.n, 0, &why))
             status = -1;
@@ -128,7 +133,10 @@ static int look_for_escaped(struct run *r, struct error *e)
         for (int c = 0; c < r->plan->dim; c++)
             wrong = wrong || !(x.low[c] >= r->watch->low[c] && x.high[c] <= r->watch->high[c]);
     }
-    if (!wrong)
+    uint64_t any = wrong; /* all ranks look then: what they count they share */
+    if (run_share_count(r, &any, e))
+        return -1;
+    if (!any)
         return 0;
     return places_there(r, e) || watch_places(r, true, e) || watch_places(r, false, e) ? -1 : 0;
 }
@@ -142,12 +150,13 @@ static int holds(struct run *r, size_t frame, bool *answer, struct error *e)
     double change[OPS_RESULTS];
     size_t n = 0;
 
-    *answer = false;
     for (size_t a = 0; a < r->plan->n_array; a++) {
         if (!frame_has(r, frame, a) || r->device->arena[a].n == 0)
             continue;
-        if (n == most) /* more arrays than results: lists are made anew */
-            return 0;
+        if (n == most) { /* more arrays than results: lists are made anew */
+            all.moved = NAN;
+            break;
+        }
         if (ops_skin_begin(r->device->ops, &r->device->skin[frame * r->plan->n_array + a],
                            &r->device->arena[a], frame_place(r, frame, a), frame_reach(r, frame, a),
                            frame_support(r->plan), r->skin, first + 2 * n++, e))
@@ -157,6 +166,8 @@ static int holds(struct run *r, size_t frame, bool *answer, struct error *e)
         return -1;
     for (size_t k = 0; k < n; k++)
         all = skin_both(all, (struct skin_change){change[2 * k], change[2 * k + 1]});
+    if (run_share_change(r, &all, e))
+        return -1;
     *answer = skin_holds(all);
     return 0;
 }
@@ -178,7 +189,7 @@ static int wrap(struct run *r, struct error *e)
 {
     for (size_t a = 0; a < r->plan->n_array; a++) {
         struct arena *arena = &r->device->arena[a];
-        if (arena->n == 0)
+        if (arena->n == 0 && !run_shared(r))
             continue;
         for (size_t c = 0; c < arena->p->n_column; c++)
             if (arena->p->column[c].state && arena_put(arena, (int)c, e))
@@ -194,7 +205,7 @@ static int wrap(struct run *r, struct error *e)
 
 static int sort(struct run *r, struct error *e)
 {
-    int status = 0;
+    int status = run_device_move(r, e);
 
     for (size_t a = 0; !status && a < r->plan->n_array; a++) {
         struct arena *arena = &r->device->arena[a];
@@ -221,6 +232,39 @@ static int sort(struct run *r, struct error *e)
     r->builds_since_sort = 0;
     r->cost.sorts++;
     r->watch->sorted = true;
+    return status;
+}
+
+/* Those of all ranks. */
+static int share_ranges(struct run *r, struct extent *all, double *overshoot, struct error *e)
+{
+    const size_t n = r->plan->n_array, most = 2 * n + 7;
+    double *value = malloc(most * sizeof(*value));
+    uint32_t *op = malloc(most * sizeof(*op));
+    int status = value && op ? 0 : error_memory(e, "the ranges of places", most * sizeof(*value));
+
+    for (size_t k = 0; !status && k < most; k++) {
+        value[k] = k < n           ? r->h_low[k]
+                   : k < 2 * n     ? r->h_high[k - n]
+                   : k < 2 * n + 3 ? all->low[k - 2 * n]
+                   : k < 2 * n + 6 ? all->high[k - 2 * n - 3]
+                                   : *overshoot;
+        op[k] = k < n || (k >= 2 * n && k < 2 * n + 3) ? SPH_REDUCE_MIN : SPH_REDUCE_MAX;
+    }
+    if (!status)
+        status = run_share_numbers(r, value, op, most, e);
+    for (size_t a = 0; !status && a < n; a++) {
+        r->h_low[a] = value[a];
+        r->h_high[a] = value[n + a];
+    }
+    for (int c = 0; !status && c < 3; c++) {
+        all->low[c] = value[2 * n + (size_t)c];
+        all->high[c] = value[2 * n + 3 + (size_t)c];
+    }
+    if (!status)
+        *overshoot = value[most - 1];
+    free(value);
+    free(op);
     return status;
 }
 
@@ -251,7 +295,7 @@ static int find_ranges(struct run *r, struct extent *all, double *overshoot, str
                 *overshoot = fmax(*overshoot, x.high[c] - box->max[c]);
         }
     }
-    return 0;
+    return run_shared(r) ? share_ranges(r, all, overshoot, e) : 0;
 }
 
 /* Whether so many ghosts would be made that somebody may have too many neighbours. */
@@ -266,6 +310,56 @@ static bool is_wide(const struct run *r, double margin)
     return wide;
 }
 
+/* The host says what is wrong with the particles that ghosts cannot be made of. */
+static int no_ghosts(struct run *r, struct error *e)
+{
+    struct error why = {0};
+    bool lost;
+
+    if (e->text[0] && !run_device_failed(r, &lost) && places_there(r, &why) == 0)
+        watch_no_ghosts(r, e);
+    return -1;
+}
+
+/* On one rank. */
+static int make_images(struct run *r, double margin, struct error *e)
+{
+    struct run_device *d = r->device;
+
+    for (size_t a = 0; a < r->plan->n_array; a++) {
+        const struct plan_array *pa = &r->plan->array[a];
+        if (ops_ghosts_make(d->ops, &d->arena[a], &d->ghosts[a], &r->plan->scene->box, margin, e))
+            return no_ghosts(r, e);
+        for (size_t c = 0; c < pa->p.n_column; c++) {
+            r->stale[a][c] = d->ghosts[a].n > 0;
+            r->mirror_old[a][c] = MIRROR_OLD;
+        }
+        r->stale[a][pa->position] = r->stale[a][pa->smoothing] = false;
+    }
+    return 0;
+}
+
+static int make_halo(struct run *r, double margin, struct error *e)
+{
+    for (size_t a = 0; a < r->plan->n_array; a++)
+        for (int c = 0; c < r->plan->dim; c++)
+            if (sides_check_width(&r->plan->scene->box, c, margin, r->plan->array[a].p.name, e))
+                return no_ghosts(r, e);
+    return run_device_halo(r, e) ? no_ghosts(r, e) : 0;
+}
+
+/* Whether there may be images beyond a side of an axis. */
+static bool has_images(const struct run *r, int axis, unsigned image)
+{
+    bool any = false;
+
+    if (run_shared(r))
+        return sides_has_image(&r->plan->scene->box, axis, image);
+    for (size_t a = 0; a < r->plan->n_array; a++)
+        any = any || r->device->ghosts[a].n > 0;
+    return any;
+}
+
 static int make_ghosts(struct run *r, struct error *e)
 {
     struct extent all;
@@ -278,30 +372,13 @@ static int make_ghosts(struct run *r, struct error *e)
     margin = margin * frame_support(r->plan) * (1.0 + r->skin) + overshoot;
     if (is_wide(r, margin) && (places_there(r, e) || watch_reach(r, margin, e)))
         return -1;
-    for (size_t a = 0; a < r->plan->n_array; a++) {
-        const struct plan_array *pa = &r->plan->array[a];
-        struct run_device *d = r->device;
-        if (ops_ghosts_make(d->ops, &d->arena[a], &d->ghosts[a], &r->plan->scene->box, margin, e)) {
-            struct error why = {0};
-            bool lost;
-            if (!run_device_failed(r, &lost) && places_there(r, &why) == 0)
-                watch_no_ghosts(r, e);
-            return -1;
-        }
-        for (size_t c = 0; c < pa->p.n_column; c++) {
-            r->stale[a][c] = d->ghosts[a].n > 0;
-            r->mirror_old[a][c] = MIRROR_OLD;
-        }
-        r->stale[a][pa->position] = r->stale[a][pa->smoothing] = false;
+    if (run_shared(r) ? make_halo(r, margin, e) : make_images(r, margin, e))
+        return -1;
+    /* They stand beyond the real ones, no further than the margin. */
+    for (int c = 0; c < r->plan->dim; c++) {
+        all.low[c] -= has_images(r, c, IMAGE_LOW) ? margin : 0.0;
+        all.high[c] += has_images(r, c, IMAGE_HIGH) ? margin : 0.0;
     }
-    if (r->device->ghosts) /* they stand beyond the real ones, no further than the margin */
-        for (int c = 0; c < r->plan->dim; c++) {
-            bool any = false;
-            for (size_t a = 0; a < r->plan->n_array; a++)
-                any = any || r->device->ghosts[a].n > 0;
-            all.low[c] -= any ? margin : 0.0;
-            all.high[c] += any ? margin : 0.0;
-        }
     return run_mirror_frame_of(r, all.low, all.high, e);
 }
 
@@ -321,17 +398,17 @@ static int make_list(struct run *r, size_t k, bool counted, struct error *e)
         error_prefix(e, "neighbours of \"%s\"", r->plan->array[l->dst].p.name);
         return host_says(r, e);
     }
-    if (list->crowded) {
+    if (list->crowded && rule->action == WATCH_STOP) {
         error_set(e, EXIT_RUN, "%llu particles of \"%s\" have more than %llu neighbours",
                   (unsigned long long)list->crowded, r->plan->array[l->dst].p.name,
                   (unsigned long long)most);
-        if (rule->action == WATCH_STOP)
-            return host_says(r, e);
-        /* Counted: who they are is nobody's question. */
-        watch_counted(r,
-                      &(struct sign){.cause = WATCH_NEIGHBOURS, .array = &r->plan->array[l->dst]},
-                      list->crowded);
+        return host_says(r, e);
     }
+    /* Counted: who they are is nobody's question. */
+    const struct sign s = {.cause = WATCH_NEIGHBOURS, .array = &r->plan->array[l->dst]};
+    if ((list->crowded || r->domain) && watch_counts(r, WATCH_NEIGHBOURS) &&
+        watch_count(r, &s, list->crowded, e))
+        return -1;
     if (counted && list->n_entry)
         r->device->share[k] = (double)list->n_pair / (double)list->n_entry;
     return 0;
@@ -365,6 +442,16 @@ static int freeze(struct run *r, size_t frame, struct error *e)
     return 0;
 }
 
+/* Of ghosts that other ranks have. */
+static int others_places(struct run *r, size_t frame, struct error *e)
+{
+    for (size_t a = 0; run_shared(r) && a < r->plan->n_array; a++)
+        if (frame_has(r, frame, a) && (run_device_refresh(r, a, frame_place(r, frame, a), e) ||
+                                       run_device_refresh(r, a, frame_reach(r, frame, a), e)))
+            return -1;
+    return run_device_trade(r, e);
+}
+
 static int frame_lists(struct run *r, size_t frame, struct error *e)
 {
     const bool frozen = r->plan->frame[frame].frozen;
@@ -377,7 +464,7 @@ static int frame_lists(struct run *r, size_t frame, struct error *e)
         return -1;
     if (r->frame_made[frame] && (frozen || right))
         return 0;
-    if (frozen && !r->frozen[frame] && freeze(r, frame, e))
+    if ((frozen && !r->frozen[frame] && freeze(r, frame, e)) || others_places(r, frame, e))
         return -1;
     status = make_frame(r, frame, true, e);
     r->frame_made[frame] = !status;
@@ -438,10 +525,12 @@ int run_device_refresh(struct run *r, size_t array, int column, struct error *e)
     if (!r->stale[array][column])
         return 0;
     r->stale[array][column] = false;
+    if (column == r->plan->array[array].position) /* whose mirror does not go along */
+        r->mirror_old[array][column] = MIRROR_OLD;
     const size_t before = device_span(r->device->d, SPAN_LISTS);
     const int status =
         ops_ghosts_refresh(r->device->ops, &r->device->arena[array], &r->device->ghosts[array],
                            &r->plan->scene->box, column, e);
     device_span(r->device->d, before);
-    return status;
+    return status || run_domain_ask(r, array, column, e) ? -1 : 0;
 }

@@ -2,6 +2,7 @@
  * stages, and what part that is of what the device reaches. Reads alone, but that it waits for the device and
  * lets it be measured. */
 #include "run/device.h"
+#include "run/domain.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -152,6 +153,14 @@ static void put_stages(cJSON *to, const struct run *r, const struct device_span 
 
 /* -- The whole -------- */
 
+/* Of each rank the number of its device. */
+static void put_taken(cJSON *to, const struct run *r)
+{
+    if (r->device->taken && run_shared(r))
+        cJSON_AddItemToObject(to, "of_ranks",
+                              cJSON_CreateIntArray(r->device->taken, wire_size(r->domain->wire)));
+}
+
 static void put_facts(cJSON *to, const struct run *r)
 {
     struct device *d = r->device->d;
@@ -165,7 +174,8 @@ static void put_facts(cJSON *to, const struct run *r)
     cJSON_AddStringToObject(to, "platform", f->platform);
     cJSON_AddStringToObject(to, "driver", f->driver);
     cJSON_AddStringToObject(to, "type", f->type);
-    number(to, "number", (double)r->plan->scene->device.number);
+    number(to, "number", (double)r->device->number);
+    put_taken(to, r);
     number(to, "bytes_most", (double)most);
     number(to, "build_s", seconds);
     number(to, "programs_built", built);

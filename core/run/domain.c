@@ -2,6 +2,8 @@
 #include "run/domain.h"
 #include "domain/migrate.h"
 #include "domain/ranks.h"
+#include "neighbours/far.h"
+#include "run/device.h"
 #include "run/frames.h"
 #include <stdlib.h>
 #include <string.h>
@@ -14,7 +16,9 @@ static int shared(struct run_domain **out, const struct plan *plan, struct error
         return error_memory(e, "the domain", sizeof *d);
     d->want = calloc(plan->n_list + 1, sizeof *d->want);
     d->cloud = calloc(plan->n_frame * n + 1, sizeof *d->cloud);
-    if (!d->want || !d->cloud)
+    d->far = calloc(plan->n_list + 1, sizeof *d->far);
+    d->far_capacity = calloc(plan->n_list + 1, sizeof *d->far_capacity);
+    if (!d->want || !d->cloud || !d->far || !d->far_capacity)
         return error_memory(e, "the domain", n * plan->n_frame * sizeof *d->cloud);
     for (size_t k = 0; k < plan->n_list; k++) {
         const struct plan_list *l = &plan->list[k];
@@ -121,6 +125,10 @@ void run_domain_close(struct run *r)
     wire_close(d->wire);
     free(d->want);
     free(d->cloud);
+    for (size_t k = 0; d->far && k < r->plan->n_list; k++)
+        free(d->far[k]);
+    free(d->far);
+    free(d->far_capacity);
     free(d->column);
     free(d->owner);
     free(d->weight);
@@ -144,7 +152,7 @@ static size_t sweeps_of(const struct plan *plan, size_t list)
 }
 
 /* Of an array's particles, by the lists there are: a group's pairs are its particles' in equal parts. */
-static double weigh(const struct run *r, size_t array, float *weight)
+static double weigh(struct run *r, size_t array, float *weight)
 {
     const struct plan *plan = r->plan;
     const size_t n = plan->array[array].p.n;
@@ -156,6 +164,8 @@ static double weigh(const struct run *r, size_t array, float *weight)
         const double each = list->true_share * (double)sweeps_of(plan, k);
         if (plan->list[k].dst != array)
             continue;
+        if (r->device)
+            run_device_weigh(r, k, (double)sweeps_of(plan, k), weight);
         for (size_t g = 0; g < list->n_group; g++) {
             const size_t first = g * SPH_LANES, end = first + SPH_LANES < n ? first + SPH_LANES : n;
             const double pairs = each * (double)group_list_entries(list, g, g + 1);
@@ -195,8 +205,8 @@ static int room_for(struct run_domain *d, size_t n, struct error *e)
     return d->capacity ? 0 : error_memory(e, "the domain", capacity * sizeof *d->place);
 }
 
-/* Cuts anew if the shares have come to differ too much. */
-static int balance(struct run *r, struct error *e)
+/* Every particle's weight, and how even the shares are. */
+static int weigh_all(struct run *r, struct error *e)
 {
     struct run_domain *d = r->domain;
     const struct plan *plan = r->plan;
@@ -210,12 +220,31 @@ static int balance(struct run *r, struct error *e)
         sum += weigh(r, a, d->weight + at);
         at += plan->array[a].p.n;
     }
-    if (find_imbalance(r, sum, e))
+    return find_imbalance(r, sum, e);
+}
+
+int run_domain_uneven(struct run *r, bool *uneven, struct error *e)
+{
+    *uneven = false;
+    if (!r->domain)
+        return 0;
+    if (weigh_all(r, e))
+        return -1;
+    *uneven = r->domain->imbalance > r->plan->scene->ranks.imbalance;
+    return 0;
+}
+
+/* Cuts anew if the shares have come to differ too much. */
+static int balance(struct run *r, struct error *e)
+{
+    struct run_domain *d = r->domain;
+    const struct plan *plan = r->plan;
+    if (weigh_all(r, e))
         return -1;
     if (!r->lists_made || !(d->imbalance > plan->scene->ranks.imbalance))
         return 0;
+    size_t at = 0;
     double *const place[3] = {d->place, d->place + d->capacity, d->place + 2 * d->capacity};
-    at = 0;
     for (size_t a = 0; a < plan->n_array; a++)
         for (size_t i = 0; i < plan->array[a].p.n; i++, at++) {
             double x[3];
@@ -224,7 +253,7 @@ static int balance(struct run *r, struct error *e)
                 place[c][at] = x[c];
         }
     d->cuts++;
-    return partition_cut(d->partition, (const double *const *)place, d->weight, n, e);
+    return partition_cut(d->partition, (const double *const *)place, d->weight, at, e);
 }
 
 int run_domain_move(struct run *r, struct error *e)
@@ -253,7 +282,7 @@ int run_domain_move(struct run *r, struct error *e)
 
 /* -- Ghosts -------- */
 
-int run_domain_ghosts(struct run *r, struct error *e)
+int run_domain_meet(struct run *r, struct error *e)
 {
     struct run_domain *d = r->domain;
     const struct plan *plan = r->plan;
@@ -269,7 +298,15 @@ int run_domain_ghosts(struct run *r, struct error *e)
                                  .want = d->want,
                                  .n_want = d->n_want,
                                  .factor = 1.0 + r->skin};
-    if (halo_make(&d->halo, &job, r->ghosts, e))
+    return halo_make(&d->halo, &job, r->ghosts, e);
+}
+
+int run_domain_ghosts(struct run *r, struct error *e)
+{
+    struct run_domain *d = r->domain;
+    const struct plan *plan = r->plan;
+    const size_t n = plan->n_array;
+    if (run_domain_meet(r, e))
         return -1;
     for (size_t a = 0; a < n; a++) {
         struct plan_array *pa = &plan->array[a];
@@ -301,8 +338,10 @@ int run_domain_ask(struct run *r, size_t array, int column, struct error *e)
 int run_domain_begin(struct run *r, struct error *e)
 {
     struct run_domain *d = r->domain;
-    return d && d->n_column ? halo_begin(&d->halo, &r->plan->scene->box, d->column, d->n_column, e)
-                            : 0;
+    if (!d || !d->n_column)
+        return 0;
+    d->waits = true;
+    return halo_begin(&d->halo, &r->plan->scene->box, d->column, d->n_column, e);
 }
 
 int run_domain_finish(struct run *r, struct error *e)
@@ -311,8 +350,51 @@ int run_domain_finish(struct run *r, struct error *e)
     if (!d || !d->n_column)
         return 0;
     const int status = halo_finish(&d->halo, d->column, d->n_column, e);
+    for (size_t k = 0; k < d->n_column; k++) {
+        uint8_t *old = &r->mirror_old[d->column[k].array][d->column[k].column];
+        *old = *old == MIRROR_FRESH ? MIRROR_GHOSTS_OLD : *old;
+    }
     d->n_column = 0;
+    d->waits = false;
     return status;
+}
+
+bool run_domain_waits(const struct run *r)
+{
+    return r->domain && r->domain->waits;
+}
+
+void run_domain_poke(const struct run *r)
+{
+    wire_poke(r->domain->wire);
+}
+
+int run_domain_list(struct run *r, size_t list, struct error *e)
+{
+    struct run_domain *d = r->domain;
+    const struct group_list *l = &r->list[list];
+    if (!d)
+        return 0;
+    const size_t array = r->plan->list[list].src;
+    if (l->n_group > d->far_capacity[list]) {
+        free(d->far[list]);
+        d->far_capacity[list] = l->n_group + l->n_group / 8;
+        d->far[list] = malloc(d->far_capacity[list] * sizeof *d->far[list]);
+        if (!d->far[list]) {
+            d->far_capacity[list] = 0;
+            return error_memory(e, "the domain", l->n_group);
+        }
+    }
+    group_list_far(l, r->plan->array[array].p.n + r->ghosts[array].n, d->far[list], r->threads);
+    return 0;
+}
+
+bool run_domain_far(const struct run *r, const struct pass *p, size_t group)
+{
+    for (size_t s = 0; s < p->n_src; s++)
+        if (group < r->list[p->list[s]].n_group && r->domain->far[p->list[s]][group])
+            return true;
+    return false;
 }
 
 /* -- Together -------- */

@@ -17,7 +17,10 @@ struct run_domain {
     struct cloud *cloud; /* [frame * n_array + array] */
     struct halo_column *column;
     size_t n_column; /* of the exchange under way */
-    int *owner;      /* room for as many particles as one asks for at once */
+    bool waits;      /* it has begun */
+    bool **far;      /* [list][group] */
+    size_t *far_capacity;
+    int *owner; /* room for as many particles as one asks for at once */
     float *weight;
     double *place;
     size_t capacity;
@@ -34,15 +37,26 @@ static inline bool run_shared(const struct run *r)
 /* Every rank has been given all particles: cuts the domain and keeps this rank's. */
 int run_domain_open(struct run *r, struct error *e);
 void run_domain_close(struct run *r);
+/* After lists have been made for the first time, by what is known of their length: whether the particles had
+ * better be moved at once. */
+int run_domain_uneven(struct run *r, bool *uneven, struct error *e);
 /* Particles go to where their places belong. */
 int run_domain_move(struct run *r, struct error *e);
 /* Ghosts of what this rank's lists may reach: room for them, and who they are; of their columns positions and
  * smoothing lengths are right. */
 int run_domain_ghosts(struct run *r, struct error *e);
+/* The first half of it, of what the host's columns hold: who needs whom. */
+int run_domain_meet(struct run *r, struct error *e);
 /* Columns that ghosts need anew, of any arrays: asked for one by one, then exchanged at once. */
 int run_domain_ask(struct run *r, size_t array, int column, struct error *e);
 int run_domain_begin(struct run *r, struct error *e);
 int run_domain_finish(struct run *r, struct error *e);
+/* Between the two; messages go on while something else is done. */
+bool run_domain_waits(const struct run *r);
+void run_domain_poke(const struct run *r);
+/* A list of this rank's has been made; whether a pass's sources of a group are not all this rank's own. */
+int run_domain_list(struct run *r, size_t list, struct error *e);
+bool run_domain_far(const struct run *r, const struct pass *p, size_t group);
 
 /* Copies of all arrays on rank 0, with every column; elsewhere arrays of nothing. all: [n_array], to be freed by
  * run_domain_scatter in any case. */

@@ -1,8 +1,11 @@
 /* run/finite.c -- which pass gave what is no number? The rates, which everything else follows
  * from, are looked at after every evaluation; all that a pass writes, where the run logs
  * (run.look). So the pass is found while the state that it worked on is still good. Reads
- * columns, no more. */
+ * columns, no more. Of several ranks the one whose particle it is speaks: of a pass at once, before others hear
+ * of its values; of rates, which others' may have spoilt already, once it is clear whose were first. */
 #include "base/clones.h"
+#include "run/domain.h"
+#include "run/foremost.h"
 #include "run/watch.h"
 #include <float.h>
 #include <math.h>
@@ -106,20 +109,35 @@ bool finite_finished(const struct run *r, const struct pass *p, size_t array, in
 /* LATE: after all passes of the moment: what a later pass has made anew is that one's. */
 enum when { AT_ONCE, LATE, TRACE };
 
-static int check(const struct run *r, const struct pass *p, enum when when, struct error *e)
+/* A particle's value that is no number, or not finite. */
+struct bad {
+    const struct plan_array *array;
+    int column;
+    size_t particle;
+    double value;
+};
+
+static bool pass_is_bad(const struct run *r, const struct pass *p, enum when when, struct bad *out)
 {
     const struct plan_array *a = &r->plan->array[p->dst.array];
     for (uint32_t k = 0; k < p->use.item->props.count; k++) {
         const sph_prop *prop = list_at(&p->use.item->props, k);
         const int column = p->dst.column[k];
-        size_t i = 0;
-        double value = 0.0;
+        *out = (struct bad){.array = a, .column = column};
         if (column >= 0 && (when == TRACE || !(prop->access & SPH_WORK)) &&
             (when == AT_ONCE || finite_finished(r, p, p->dst.array, column, true)) &&
-            pass_writes(p, p->dst.array, column) && find_bad(a, column, false, &i, &value))
-            return tell(r, p->name, a, column, i, value, e);
+            pass_writes(p, p->dst.array, column) &&
+            find_bad(a, column, false, &out->particle, &out->value))
+            return true;
     }
-    return 0;
+    return false;
+}
+
+static int check(const struct run *r, const struct pass *p, enum when when, struct error *e)
+{
+    struct bad b;
+    return pass_is_bad(r, p, when, &b) ? tell(r, p->name, b.array, b.column, b.particle, b.value, e)
+                                       : 0;
 }
 
 int finite_pass(const struct run *r, const struct pass *p, struct error *e)
@@ -132,14 +150,39 @@ int finite_pass_late(const struct run *r, const struct pass *p, struct error *e)
     return check(r, p, LATE, e);
 }
 
+/* The first pass of this rank of which something is bad, in the order of the search; NULL: none. */
+static const struct pass *trace(const struct run *r, struct bad *out, size_t *order)
+{
+    static const enum moment moments[] = {MOMENT_EVALUATE, MOMENT_FINISH, MOMENT_START};
+    *order = 0;
+    for (size_t m = 0; m < sizeof moments / sizeof moments[0]; m++)
+        for (size_t i = 0; i < r->plan->n_pass; i++, ++*order)
+            if (r->plan->pass[i].moment == moments[m] &&
+                pass_is_bad(r, &r->plan->pass[i], TRACE, out))
+                return &r->plan->pass[i];
+    return NULL;
+}
+
+/* What a rank has found as so manieth, among others. */
+static struct foremost found(const struct bad *b, bool any, size_t order)
+{
+    struct foremost f = {.key = NAN};
+    if (any) {
+        f.key = -(double)order;
+        f.id = watch_id(b->array, b->particle);
+    }
+    return f;
+}
+
 int finite_trace(const struct run *r, struct error *e)
 {
-    static const enum moment order[] = {MOMENT_EVALUATE, MOMENT_FINISH, MOMENT_START};
-    for (size_t m = 0; m < sizeof order / sizeof order[0]; m++)
-        for (size_t i = 0; i < r->plan->n_pass; i++)
-            if (r->plan->pass[i].moment == order[m] && check(r, &r->plan->pass[i], TRACE, e))
-                return -1;
-    return 0;
+    struct bad b;
+    size_t order;
+    const struct pass *p = trace(r, &b, &order);
+    struct foremost f = found(&b, p != NULL, order);
+    if (foremost_find(r, &f, NULL, 0, e))
+        return -1;
+    return f.mine ? tell(r, p->name, b.array, b.column, b.particle, b.value, e) : f.any ? -1 : 0;
 }
 
 const char *finite_writer(const struct run *r, size_t array, int column)
@@ -152,24 +195,39 @@ const char *finite_writer(const struct run *r, size_t array, int column)
     return name;
 }
 
+/* The first rate of this rank that is not finite; false: there is none. */
+static bool find_rate(const struct run *r, struct bad *out, size_t *order)
+{
+    *order = 0;
+    for (size_t k = 0; k < r->plan->n_array; k++) {
+        const struct plan_array *a = &r->plan->array[k];
+        for (size_t q = 0; q < a->n_rate; q++, ++*order) {
+            *out = (struct bad){.array = a, .column = a->rate[q].rate};
+            if (find_bad(a, out->column, true, &out->particle, &out->value))
+                return true;
+        }
+    }
+    return false;
+}
+
 /* The search is for those who have seen one: closing.c and advance.c, which look at all that is written. */
 int finite_rates(struct run *r, struct error *e)
 {
-    if (!r->suspect)
-        return 0;
+    uint64_t suspect = r->suspect;
+    struct bad b;
+    size_t order;
+    if (run_share_count(r, &suspect, e))
+        return -1;
     r->suspect = false;
-    for (size_t k = 0; k < r->plan->n_array; k++) {
-        const struct plan_array *a = &r->plan->array[k];
-        for (size_t q = 0; q < a->n_rate; q++) {
-            const int column = a->rate[q].rate;
-            size_t i = 0;
-            double value = 0.0;
-            if (!find_bad(a, column, true, &i, &value))
-                continue;
-            if (isnan(value) && finite_trace(r, e))
-                return -1;
-            return tell(r, finite_writer(r, k, column), a, column, i, value, e);
-        }
-    }
-    return 0;
+    if (!suspect)
+        return 0;
+    const bool any = find_rate(r, &b, &order);
+    struct foremost f = found(&b, any, order);
+    bool none = any && isnan(b.value);
+    if (foremost_find(r, &f, &none, sizeof none, e) || (f.any && none && finite_trace(r, e)))
+        return -1;
+    if (!f.mine)
+        return f.any ? -1 : 0;
+    return tell(r, finite_writer(r, (size_t)(b.array - r->plan->array), b.column), b.array,
+                b.column, b.particle, b.value, e);
 }

@@ -270,7 +270,7 @@ static int make_ghosts(struct run *r, struct error *e)
     for (size_t a = 0; a < r->plan->n_array; a++)
         for (int c = 0; c < r->plan->dim; c++)
             if (sides_check_width(&r->plan->scene->box, c, margin, r->plan->array[a].p.name, e))
-                return watch_no_ghosts(r, e);
+                return watch_too_wide(r, e);
     if (r->domain ? run_domain_ghosts(r, e) : make_images(r, margin, e))
         return -1;
     for (size_t a = 0; a < r->plan->n_array; a++) {
@@ -306,7 +306,7 @@ static int make_list(struct run *r, size_t k, bool counted, struct error *e)
         list->true_share = ((double)group_list_count(list, &dst, &src, r->threads) -
                             (l->dst == l->src ? (double)dst.n : 0.0)) /
                            (double)list->n_entry; /* a particle is no pair with itself */
-    return 0;
+    return run_domain_list(r, k, e);
 }
 
 static int make_visits(struct run *r, struct error *e)
@@ -380,6 +380,33 @@ int run_frame(struct run *r, size_t frame, struct error *e)
     return status;
 }
 
+/* Lists and ghosts anew; sort: particles are put in order before, and go to their ranks. */
+static int renew(struct run *r, bool within, bool sort, struct error *e)
+{
+    int status = watch_places(r, true, e);
+    if (!status)
+        status = widen_places(r, e);
+    for (size_t a = 0; !within && !status && a < r->plan->n_array; a++)
+        sides_wrap(&r->plan->scene->box, &r->plan->array[a].p);
+    if (!status && sort)
+        status = run_domain_move(r, e) || widen_h(r, e) ? -1 : 0;
+    for (size_t a = 0; !status && sort && a < r->plan->n_array; a++)
+        status = sort_array(r, a, e);
+    if (!status && sort) {
+        r->builds_since_sort = 0;
+        r->cost.sorts++;
+        r->watch->sorted = true;
+    }
+    if (!status)
+        status = make_lists(r, sort, e);
+    forget_h(r);
+    if (!status)
+        status = narrow_places(r, e);
+    r->lists_made = !status;
+    r->cost.list_builds++;
+    return status;
+}
+
 int run_lists(struct run *r, bool within, struct error *e)
 {
     if (r->plan->n_list == 0) {
@@ -391,30 +418,14 @@ int run_lists(struct run *r, bool within, struct error *e)
     bool made = false;
     int status = r->lists_made ? holds(r, 0, &made, e) : 0;
     if (!status && !made) {
-        bool sort = !within && (!r->lists_made || ++r->builds_since_sort >= BUILDS_PER_SORT);
-        status = watch_places(r, true, e);
-        if (!status)
-            status = widen_places(r, e);
-        if (!within && !status) {
-            for (size_t a = 0; a < r->plan->n_array; a++)
-                sides_wrap(&r->plan->scene->box, &r->plan->array[a].p);
-            if (sort)
-                status = run_domain_move(r, e) || widen_h(r, e);
-            for (size_t a = 0; !status && sort && a < r->plan->n_array; a++)
-                status = sort_array(r, a, e);
-            if (sort) {
-                r->builds_since_sort = 0;
-                r->cost.sorts++;
-                r->watch->sorted = true;
-            }
-        }
-        if (!status)
-            status = make_lists(r, sort, e);
-        forget_h(r);
-        if (!status)
-            status = narrow_places(r, e);
-        r->lists_made = !status;
-        r->cost.list_builds++;
+        const bool first = !within && !r->lists_made && r->cost.list_builds == 0;
+        const bool sort = !within && (!r->lists_made || ++r->builds_since_sort >= BUILDS_PER_SORT);
+        bool uneven = false;
+        status = renew(r, within, sort, e);
+        if (!status && first)
+            status = run_domain_uneven(r, &uneven, e);
+        if (!status && uneven)
+            status = renew(r, within, sort, e);
     }
     r->lists_suspect = false;
     r->cost.neighbour += omp_get_wtime() - begin;

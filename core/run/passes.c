@@ -42,6 +42,7 @@ static int ranges_all(struct ranges *a, uint64_t n, struct error *e)
     for (uint64_t first = 0; first < n; first += CHUNK)
         if (ranges_add(a, first, n - first < CHUNK ? n - first : CHUNK, e))
             return -1;
+    a->near = a->n;
     return 0;
 }
 
@@ -64,6 +65,7 @@ static int ranges_unfinished(struct ranges *a, const int32_t *unfinished, uint64
         else if (ranges_add(a, g, end - g, e))
             return -1;
     }
+    a->near = a->n;
     return 0;
 }
 
@@ -95,22 +97,71 @@ static int mirror(struct run *r, const struct pass *p, const struct binding *b, 
     return 0;
 }
 
-/* Everything that the sweeps read is right: ghosts hold their parents' values, mirrors the columns'. */
+static int mirrors(struct run *r, const struct pass *p, struct error *e)
+{
+    for (size_t s = 0; s < p->n_src; s++)
+        if (mirror(r, p, &p->src[s], e))
+            return -1;
+    return mirror(r, p, &p->dst, e);
+}
+
+int pass_arrive(struct run *r, const struct pass *p, struct error *e)
+{
+    return run_domain_finish(r, e) || (p->shape == SPH_PAIR && mirrors(r, p, e)) ? -1 : 0;
+}
+
+/* Everything that the sweeps read becomes right: ghosts hold their parents' values, mirrors the columns'. What
+ * comes from other ranks has been sent. */
 static int refresh_all(struct run *r, const struct pass *p, struct error *e)
 {
     const uint32_t n = p->use.item->props.count + 2;
-    for (size_t s = 0; s < p->n_src; s++)
+    if (closing_ask(r, p, e))
+        return -1;
+    for (size_t s = 0; p->shape == SPH_PAIR && s < p->n_src; s++)
         for (uint32_t k = 0; k < n; k++) {
             const int column = swept(r, p, &p->src[s], k);
             if (column >= 0 && run_refresh_own(r, p->src[s].array, column, e))
                 return -1;
         }
-    if (run_domain_begin(r, e) || run_domain_finish(r, e))
+    if (run_domain_begin(r, e))
         return -1;
-    for (size_t s = 0; s < p->n_src; s++)
-        if (mirror(r, p, &p->src[s], e))
-            return -1;
-    return mirror(r, p, &p->dst, e);
+    return p->shape == SPH_PAIR ? mirrors(r, p, e) : 0;
+}
+
+/* Of the ranges those first that need nothing of what is on its way. */
+static int ranges_part(const struct run *r, const struct pass *p, const struct ranges *all,
+                       struct ranges *parted, struct error *e)
+{
+    for (int far = 0; far < 2; far++) {
+        for (size_t k = 0; k < all->n; k++) {
+            const uint64_t end = all->first[k] + all->count[k];
+            for (uint64_t at = all->first[k], next = at; at < end; at = next) {
+                const bool is = run_domain_far(r, p, at / SPH_LANES);
+                do
+                    next += SPH_LANES;
+                while (next < end && run_domain_far(r, p, next / SPH_LANES) == is);
+                next = next < end ? next : end;
+                if (is == far && ranges_add(parted, at, next - at, e))
+                    return -1;
+            }
+        }
+        parted->near = far ? parted->near : parted->n;
+    }
+    return 0;
+}
+
+/* While messages are on their way, if the pass can go on without. */
+static int run_chunks(struct run *r, struct pass *p, const struct ranges *all, struct error *e)
+{
+    struct ranges parted = {0};
+    const bool waits = run_domain_waits(r);
+    if (!waits || !p->local || p->shape != SPH_PAIR)
+        return (waits && pass_arrive(r, p, e)) || chunks_run(r, p, all, e) ? -1 : 0;
+    int status = ranges_part(r, p, all, &parted, e);
+    if (!status)
+        status = chunks_run(r, p, &parted, e);
+    ranges_free(&parted);
+    return !status && run_domain_waits(r) ? pass_arrive(r, p, e) : status;
 }
 
 /* What the pass has written is old in ghosts and mirrors; a changed h or place makes the lists suspect. */
@@ -131,10 +182,10 @@ static int sweep(struct run *r, struct pass *p, const struct ranges *ranges, str
 {
     if (p->shape == SPH_PAIR && r->lists_suspect && run_lists(r, true, e))
         return -1;
-    if (p->shape == SPH_PAIR && (run_frame(r, p->frame, e) || refresh_all(r, p, e)))
+    if ((p->shape == SPH_PAIR && run_frame(r, p->frame, e)) || refresh_all(r, p, e))
         return -1;
     audit_begin(r, p);
-    int status = chunks_run(r, p, ranges, e);
+    int status = run_chunks(r, p, ranges, e);
     if (audit_end(r, p, status ? NULL : e))
         status = -1;
     mark_written(r, p);
@@ -195,8 +246,7 @@ static int run_pass(struct run *r, struct pass *p, struct error *e)
     return status;
 }
 
-/* Right after its pass, but for what that has reduced itself: later steps, and other functions, see what it
- * came to. */
+/* Right after its pass, but for what that has reduced itself. */
 static int reduce_pass(struct run *r, size_t pass, struct error *e)
 {
     const struct pass *p = &r->plan->pass[pass];
@@ -205,11 +255,36 @@ static int reduce_pass(struct run *r, size_t pass, struct error *e)
         if (d->pass != pass)
             continue;
         const bool done = closing_reduces(p, d) && r->plan->array[d->array].p.n > 0;
-        if (done ? run_share_numbers(r, &r->reduced[i], &d->declared->op, 1, e)
-                 : run_reduce(r, d, &r->reduced[i], e))
+        if (!done && run_reduce(r, d, &r->reduced[i], e))
             return -1;
     }
     return 0;
+}
+
+/* Those of all passes of a moment, of all ranks. */
+static int share_reduced(struct run *r, enum moment moment, struct error *e)
+{
+    const size_t n = r->plan->n_reduction;
+    double *value = malloc((n + 1) * sizeof *value);
+    uint32_t *op = malloc((n + 1) * sizeof *op);
+    int status = value && op ? 0 : error_memory(e, "reductions", n * sizeof *value);
+    for (int back = 0; !status && back < 2; back++) {
+        size_t k = 0;
+        for (size_t i = 0; i < n; i++) {
+            const struct reduction *d = &r->plan->reduction[i];
+            if (d->pass == NO_PASS || r->plan->pass[d->pass].moment != moment ||
+                reduced_exactly(r->plan, d))
+                continue;
+            if (back)
+                r->reduced[i] = value[k];
+            value[k] = r->reduced[i];
+            op[k++] = d->declared->op;
+        }
+        status = back ? 0 : run_share_numbers(r, value, op, k, e);
+    }
+    free(op);
+    free(value);
+    return status;
 }
 
 void run_bound_dt(struct run *r)
@@ -240,6 +315,8 @@ int run_passes(struct run *r, enum moment moment, struct error *e)
         if (reduce_pass(r, i, e))
             return -1;
     }
+    if (r->domain && share_reduced(r, moment, e))
+        return -1;
     if (moment != MOMENT_EVALUATE)
         return 0;
     run_bound_dt(r);

@@ -92,6 +92,11 @@ static int exact(const struct run *r, const struct column *value, const struct c
     return 0;
 }
 
+bool reduced_exactly(const struct plan *plan, const struct reduction *d)
+{
+    return plan->strict && d->declared->op == SPH_REDUCE_SUM;
+}
+
 int run_reduce(const struct run *r, const struct reduction *d, double *out, struct error *e)
 {
     const struct plan_array *a = &r->plan->array[d->array];
@@ -100,7 +105,7 @@ int run_reduce(const struct run *r, const struct reduction *d, double *out, stru
     const struct column *value = &a->p.column[d->column],
                         *mass = weighted ? &a->p.column[a->mass] : NULL;
     const long blocks = (long)((a->p.n + BLOCK - 1) / BLOCK);
-    if (r->plan->strict && op == SPH_REDUCE_SUM)
+    if (reduced_exactly(r->plan, d))
         return exact(r, value, mass, a->p.n, out, e);
     double *part = malloc(((size_t)blocks + 1) * sizeof *part);
     double all = reduce_range(value, mass, op, 0, 0);
@@ -117,5 +122,5 @@ int run_reduce(const struct run *r, const struct reduction *d, double *out, stru
     }
     free(part);
     *out = all;
-    return run_share_numbers(r, out, &op, 1, e);
+    return 0;
 }

@@ -138,6 +138,7 @@ int run_mirror_frame_of(struct run *r, const double *low, const double *high, st
 bool mirror_places(const struct run *r, const struct column *c, uint32_t k, size_t first, size_t n);
 
 /* reduce.c: a reduction of its column as it is now, over all ranks. */
+bool reduced_exactly(const struct plan *plan, const struct reduction *d);
 int run_reduce(const struct run *r, const struct reduction *d, double *out, struct error *e);
 /* reduce.c: over particles [first, end); mass NULL: not weighted. */
 double reduce_range(const struct column *value, const struct column *mass, uint32_t op,
@@ -178,9 +179,9 @@ int run_look(struct run *r, struct error *e);
 int finite_pass(const struct run *r, const struct pass *p, struct error *e);
 /* ... after all passes of its moment. */
 int finite_pass_late(const struct run *r, const struct pass *p, struct error *e);
-/* After an evaluation: all rates are finite. */
+/* After an evaluation, by all ranks: all rates are finite. */
 int finite_rates(struct run *r, struct error *e);
-/* When something else is no number: the first pass of which something is. 0: there is none. */
+/* When something else is no number, by all ranks: the first pass of which something is. 0: there is none. */
 int finite_trace(const struct run *r, struct error *e);
 
 /* finite.c: the last pass of an evaluation that writes a column. */

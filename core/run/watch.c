@@ -2,6 +2,7 @@
  * only when something is wrong is the particle looked for. Knows the contract's names of columns, and no
  * more of what they stand for. */
 #include "run/watch.h"
+#include "run/domain.h"
 #include "run/frames.h"
 #include "base/clones.h"
 #include "run/region.h"
@@ -140,18 +141,23 @@ static void extent(const struct run *r, uint32_t k, double *low, double *high)
 
 /* Beyond an open side so many sizes of the domain, or of all that is there at the start. A mirror throws
  * back what crosses it, but nothing sane crosses it by a whole domain in a step. */
-static void set_bounds(struct run *r)
+static int set_bounds(struct run *r, struct error *e)
 {
+    static const uint32_t op[6] = {SPH_REDUCE_MIN, SPH_REDUCE_MIN, SPH_REDUCE_MIN,
+                                   SPH_REDUCE_MAX, SPH_REDUCE_MAX, SPH_REDUCE_MAX};
     const struct box *box = &r->plan->scene->box;
     struct watch *w = r->watch;
-    double low[3], high[3], size = 0.0;
+    double ends[6] = {0.0}, *low = ends, *high = ends + 3, size = 0.0;
     for (int c = 0; c < r->plan->dim; c++) {
         low[c] = box->min[c];
         high[c] = box->max[c];
         if (!box->bounded)
             extent(r, (uint32_t)c, &low[c], &high[c]);
-        size = fmax(size, high[c] - low[c]);
     }
+    if (run_share_numbers(r, ends, op, 6, e))
+        return -1;
+    for (int c = 0; c < r->plan->dim; c++)
+        size = fmax(size, high[c] - low[c]);
     for (int c = 0; c < r->plan->dim; c++)
         for (int side = 0; side < 2; side++) {
             const enum side is = box->bounded ? box->side[c][side] : SIDE_OPEN;
@@ -162,23 +168,10 @@ static void set_bounds(struct run *r)
             const double at = side ? high[c] + far : low[c] - far;
             *(side ? &w->high[c] : &w->low[c]) = fmin(fmax(at, -DBL_MAX), DBL_MAX);
         }
+    return 0;
 }
 
 /* -- What was found ----------------------------------------------------------------------------- */
-
-/* True: it is counted, and the run goes on. */
-bool watch_counted(struct run *r, const struct sign *s, uint64_t n)
-{
-    struct watch *w = r->watch;
-    if (w->scene[s->cause].action != WATCH_COUNT)
-        return false;
-    const size_t array = s->array ? (size_t)(s->array - r->plan->array) : 0;
-    uint64_t *here = &w->here[(size_t)s->cause * r->plan->n_array + array];
-    *here = n > *here ? n : *here;
-    if (!w->count[s->cause].first.happened)
-        w->count[s->cause].first = watch_record(r, s);
-    return true;
-}
 
 void watch_step(struct run *r)
 {
@@ -227,21 +220,24 @@ static int look_at(struct run *r, const struct watched *k, double least, const c
     const struct plan_array *a = &r->plan->array[k->array];
     const struct column *c = &a->p.column[k->column];
     const long bad = count_column(r, c, 0, a->p.n, least, INFINITY, false);
-    if (!bad)
+    if (!bad && !watch_counts_together(r, k->cause))
         return 0;
-    struct sign s = {k->cause, a, 0, (size_t)bad - 1, by, c->name};
+    struct sign s = {.cause = k->cause, .array = a, .others = (size_t)bad, .by = by};
     double worst = INFINITY;
-    for (size_t i = 0; i < a->p.n; i++)
+    s.column = c->name;
+    s.others -= bad > 0;
+    for (size_t i = 0; bad && i < a->p.n; i++)
         if (column_get(c, 0, i) < worst) {
             worst = column_get(c, 0, i);
             s.particle = i;
         }
     char who[320];
+    s.weight = -worst;
+    if (watch_counts(r, k->cause))
+        return watch_count(r, &s, (uint64_t)bad, e);
     watch_column_made_by(who, sizeof who, r, k->array, k->column, by);
-    return watch_counted(r, &s, (uint64_t)bad)
-               ? 0
-               : watch_fail(r, &s, e, "%s of particle %lld of \"%s\" became %g %s,", c->name,
-                            watch_id(a, s.particle), a->p.name, worst, who);
+    return watch_fail(r, &s, e, "%s of particle %lld of \"%s\" became %g %s,", c->name,
+                      watch_id(a, s.particle), a->p.name, worst, who);
 }
 
 /* -- Before an evaluation ----------------------------------------------------------------------- */
@@ -258,20 +254,22 @@ static bool is_outside(const struct run *r, const struct plan_array *a, size_t i
 
 static int nowhere(struct run *r, const struct plan_array *a, size_t i, struct error *e)
 {
-    const struct sign s = {WATCH_NOT_FINITE, a, i, 0, WATCH_INTEGRATOR, NULL};
+    const struct sign s = {
+        .cause = WATCH_NOT_FINITE, .array = a, .particle = i, .by = WATCH_INTEGRATOR};
     return watch_fail(r, &s, e,
                       "the integrator made \"%s\" infinite or not a number for particle %lld of "
                       "array \"%s\"",
                       a->p.column[a->position].name, watch_id(a, i), a->p.name);
 }
 
-/* Those that left: all are gone through, since some component of some is outside. */
-static int left(struct run *r, const struct plan_array *a, const bool *inside, struct error *e)
+/* Those that left: all are gone through, since some component of some is outside; or none, if nobody has. */
+static int left(struct run *r, const struct plan_array *a, bool any, const bool *inside,
+                struct error *e)
 {
     struct sign s = {
-        WATCH_ESCAPED, a, SIZE_MAX, 0, r->watch->begun ? WATCH_INTEGRATOR : WATCH_SCENE, NULL};
+        .cause = WATCH_ESCAPED, .array = a, .by = r->watch->begun ? WATCH_INTEGRATOR : WATCH_SCENE};
     uint64_t n = 0;
-    for (size_t i = 0; i < a->p.n; i++) {
+    for (size_t i = 0; any && i < a->p.n; i++) {
         for (int c = 0; c < r->plan->dim; c++)
             if (!isfinite(column_get(&a->p.column[a->position], (uint32_t)c, i)))
                 return nowhere(r, a, i, e);
@@ -280,7 +278,9 @@ static int left(struct run *r, const struct plan_array *a, const bool *inside, s
         s.particle = n++ ? s.particle : i;
     }
     s.others = n ? n - 1 : 0;
-    if (!n || r->watch->scene[WATCH_ESCAPED].action == WATCH_OFF || watch_counted(r, &s, n))
+    if (watch_counts(r, WATCH_ESCAPED))
+        return n || r->domain ? watch_count(r, &s, n, e) : 0;
+    if (!n || r->watch->scene[WATCH_ESCAPED].action == WATCH_OFF)
         return 0;
     char who[160];
     return watch_fail(r, &s, e, "particle %lld of \"%s\" was moved %s out of %s, to a place",
@@ -300,7 +300,7 @@ static int look_where(struct run *r, const struct plan_array *a, struct error *e
         return error_memory(e, "the watch", a->p.n);
     int status = region_select(a, where, inside, e);
     if (!status)
-        status = left(r, a, inside, e);
+        status = left(r, a, true, inside, e);
     free(inside);
     return status;
 }
@@ -312,7 +312,7 @@ static int look_for_escaped(struct run *r, size_t array, struct error *e)
     for (int c = 0; c < r->plan->dim; c++)
         bad += count_column(r, &a->p.column[a->position], (uint32_t)c, a->p.n, r->watch->low[c],
                             r->watch->high[c], true);
-    if (bad && left(r, a, NULL, e))
+    if ((bad || watch_counts_together(r, WATCH_ESCAPED)) && left(r, a, bad, NULL, e))
         return -1;
     return look_where(r, a, e);
 }
@@ -321,8 +321,8 @@ int watch_places(struct run *r, bool all, struct error *e)
 {
     const struct scene_watch *rule = &r->watch->scene[WATCH_ESCAPED];
     const bool always = rule->where || rule->action == WATCH_COUNT;
-    if (!r->watch->bounded)
-        set_bounds(r);
+    if (!r->watch->bounded && set_bounds(r, e))
+        return -1;
     r->watch->bounded = true;
     for (size_t a = 0; a < r->plan->n_array; a++)
         if ((always || all == frame_has(r, 0, a)) && look_for_escaped(r, a, e))
@@ -338,9 +338,13 @@ int watch_state(struct run *r, struct error *e)
         struct watched *c = &w->column[k];
         const struct plan_array *a = &r->plan->array[c->array];
         /* An internal energy may be counted from anywhere: whoever begins below 0 means it. */
-        if (first && c->cause == WATCH_INTERNAL_ENERGY)
-            c->may_be =
-                count_column(r, &a->p.column[c->column], 0, a->p.n, c->least, INFINITY, false) > 0;
+        if (first && c->cause == WATCH_INTERNAL_ENERGY) {
+            uint64_t below = (uint64_t)count_column(r, &a->p.column[c->column], 0, a->p.n, c->least,
+                                                    INFINITY, false);
+            if (run_share_count(r, &below, e))
+                return -1;
+            c->may_be = below > 0;
+        }
         if (c->integrated && !c->may_be &&
             look_at(r, c, c->least, first ? WATCH_SCENE : WATCH_INTEGRATOR, e))
             return -1;
@@ -403,6 +407,7 @@ static struct sign who_bounds(const struct run *r, double dt)
             s.array = a;
             s.particle = i;
         }
+    s.weight = -least;
     return s;
 }
 
@@ -420,8 +425,13 @@ int watch_time_step(struct run *r, double dt, double span, struct error *e)
     if (run_fetch(r, e))
         return -1;
     const struct sign s = who_bounds(r, dt);
-    if (!stands && watch_counted(r, &s, 1))
-        return 0;
+    enum watch_blame blame;
+    if (watch_blame(r, &s, &blame, e))
+        return -1;
+    if (!stands && watch_counts(r, WATCH_TIME_STEP))
+        return watch_count_event(r, &s, blame, e);
+    if (blame == WATCH_THEIRS)
+        return -1;
     const struct reduction *d = bound_of(r, dt);
     char of[320] = "";
     if (s.array)
@@ -450,6 +460,7 @@ static struct sign who_moves(const struct run *r)
             }
         }
     }
+    s.weight = most;
     return s;
 }
 
@@ -467,8 +478,13 @@ int watch_energy(struct run *r, const struct totals *first, const struct totals 
     if (run_fetch(r, e))
         return -1;
     const struct sign s = who_moves(r);
-    if (watch_counted(r, &s, 1))
-        return 0;
+    enum watch_blame blame;
+    if (watch_blame(r, &s, &blame, e))
+        return -1;
+    if (watch_counts(r, WATCH_ENERGY))
+        return watch_count_event(r, &s, blame, e);
+    if (blame == WATCH_THEIRS)
+        return -1;
     char who[160] = "";
     if (s.array)
         snprintf(who, sizeof who, ", the most kinetic energy has particle %lld of \"%s\",",

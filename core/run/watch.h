@@ -1,6 +1,7 @@
 /* run/watch.h -- signs that a run has gone wrong ("watch" of the scene): looked for, and told with the
  * particle and the pass that they come from, or counted. Reads columns and totals; what it finds is kept
- * in the run's struct watch, for summary.json. */
+ * in the run's struct watch, for summary.json. On several ranks what is counted is counted over all of them, and
+ * each has the counts; a run is stopped by the rank whose particle it is. */
 #ifndef RUN_WATCH_H
 #define RUN_WATCH_H
 
@@ -68,6 +69,8 @@ int watch_crowd(struct run *r, size_t k, struct error *e);
  * says. Both return -1. */
 int watch_no_lists(struct run *r, struct error *e);
 int watch_no_ghosts(struct run *r, struct error *e);
+/* Likewise of ghosts that no rank can make, said by the one that has the largest. */
+int watch_too_wide(struct run *r, struct error *e);
 /* Before ghosts are made for a margin: where they would be many, that nobody has too many neighbours
  * without them. */
 int watch_reach(struct run *r, double margin, struct error *e);
@@ -87,6 +90,8 @@ struct sign {
     size_t others;      /* of which the same may be said */
     const char *by;     /* as failure.pass */
     const char *column; /* named in the sentence already, or NULL */
+    double
+        weight; /* of those that ranks have found the largest is told of, of equals that of the smallest id */
 };
 
 /* watch_tell.c. Keeps the failure and says "WHAT at x = (..), step .., t = ..; rho = .., ...; likely ..."
@@ -99,8 +104,19 @@ struct failure watch_record(const struct run *r, const struct sign *s);
 #define WATCH_INTEGRATOR "integrator"
 #define WATCH_SCENE "scene"
 
-/* watch.c, for the files watch*.c. True: the sign is counted, with n particles, and the run goes on. */
-bool watch_counted(struct run *r, const struct sign *s, uint64_t n);
+/* watch_ranks.c. Whether a cause is counted, and the run goes on; together: by several ranks, so that those call
+ * watch_count that have found nothing as well. */
+bool watch_counts(const struct run *r, enum watch_cause cause);
+bool watch_counts_together(const struct run *r, enum watch_cause cause);
+/* Of a cause that is counted: n particles of this rank. */
+int watch_count(struct run *r, const struct sign *s, uint64_t n, struct error *e);
+/* Whose particle the sign is of, which each rank may have found one for. */
+enum watch_blame { WATCH_NOBODY, WATCH_OURS, WATCH_THEIRS };
+int watch_blame(const struct run *r, const struct sign *s, enum watch_blame *out, struct error *e);
+/* One event, that all ranks have seen. */
+int watch_count_event(struct run *r, const struct sign *s, enum watch_blame blame, struct error *e);
+
+/* watch.c, for the files watch*.c. */
 /* Who made it, in a sentence; of a column, with what the integrator made it of. Both return text. */
 const char *watch_made_by(char *text, size_t size, const char *by);
 const char *watch_column_made_by(char *text, size_t size, const struct run *r, size_t array,

@@ -384,7 +384,7 @@ static int compile_ranks(struct scene *s, const cJSON *node, struct error *e)
     static const char *const keys[] = {"partition", "imbalance"};
     static const char *const words[] = {"rcb", "rib", "hsfc"};
     s->ranks.partition = 0;
-    s->ranks.imbalance = 1.05;
+    s->ranks.imbalance = 1.01;
     if (!node)
         return 0;
     if (json_keys(s->doc, node, keys, COUNT(keys), e) < 0 ||

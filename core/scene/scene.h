@@ -255,13 +255,14 @@ struct scene {
         size_t partition; /* by domain/partition.h: 0 "rcb", 1 "rib", 2 "hsfc" */
         double
             imbalance; /* largest share of a rank over the mean, from which the domain is cut anew */
-    } ranks;           /* optional key "ranks": {"partition": "rcb", "imbalance": 1.05} */
+    } ranks;           /* optional key "ranks": {"partition": "rcb", "imbalance": 1.01} */
     const char *precision; /* "double", "mixed", "single"; NULL: the scheme's */
     /* The command line's, as `precision` may be. */
     struct {
         bool opencl; /* else the processor */
         bool only;   /* no falling back to it */
         size_t number;
+        bool numbered; /* the number was given: else ranks of a machine share its devices */
     } device;
     struct scene_watch watch[WATCH_CAUSES];
     struct scene_compare *compare;

@@ -1,0 +1,77 @@
+/* run/watch_ranks.c -- what the watch counts, and whose particle is to blame, over all ranks. Every rank makes the
+ * same calls; one that finds itself alone at fault fails alone, and the others hear of it where they next wait. */
+#include "run/domain.h"
+#include "run/foremost.h"
+#include "run/watch.h"
+#include <stdlib.h>
+#include <string.h>
+
+bool watch_counts(const struct run *r, enum watch_cause cause)
+{
+    return r->watch->scene[cause].action == WATCH_COUNT;
+}
+
+bool watch_counts_together(const struct run *r, enum watch_cause cause)
+{
+    return r->domain && watch_counts(r, cause);
+}
+
+/* A failure as ranks can share it. */
+struct record {
+    double x[3];
+    int64_t particle;
+    uint64_t array; /* + 1; 0: none */
+    char pass[sizeof((struct failure *)NULL)->pass];
+};
+
+static int record_first(struct run *r, const struct sign *s, bool any, struct error *e)
+{
+    struct failure *first = &r->watch->count[s->cause].first;
+    struct failure own = {.step = r->step, .time = r->time, .cause = s->cause};
+    struct foremost f = {.key = any ? s->weight : NAN};
+    if (any)
+        own = watch_record(r, s);
+    struct record q = {.particle = own.particle};
+    f.id = own.particle;
+    q.array = own.array ? (uint64_t)(own.array - r->plan->array) + 1 : 0;
+    memcpy(q.x, own.x, sizeof q.x);
+    memcpy(q.pass, own.pass, sizeof q.pass);
+    if (foremost_find(r, &f, &q, sizeof q, e))
+        return -1;
+    own.happened = f.any;
+    own.array = q.array ? &r->plan->array[q.array - 1] : NULL;
+    own.particle = q.particle;
+    memcpy(own.x, q.x, sizeof own.x);
+    memcpy(own.pass, q.pass, sizeof own.pass);
+    *first = own;
+    return 0;
+}
+
+int watch_count(struct run *r, const struct sign *s, uint64_t n, struct error *e)
+{
+    struct watch *w = r->watch;
+    const size_t array = s->array ? (size_t)(s->array - r->plan->array) : 0;
+    uint64_t *here = &w->here[(size_t)s->cause * r->plan->n_array + array], all = n;
+    if (run_share_count(r, &all, e))
+        return -1;
+    *here = all > *here ? all : *here;
+    return all && !w->count[s->cause].first.happened ? record_first(r, s, n > 0, e) : 0;
+}
+
+int watch_blame(const struct run *r, const struct sign *s, enum watch_blame *out, struct error *e)
+{
+    struct foremost f = {.key = NAN};
+    if (s->array) {
+        f.key = s->weight;
+        f.id = watch_id(s->array, s->particle);
+    }
+    if (foremost_find(r, &f, NULL, 0, e))
+        return -1;
+    *out = !f.any ? WATCH_NOBODY : f.mine ? WATCH_OURS : WATCH_THEIRS;
+    return 0;
+}
+
+int watch_count_event(struct run *r, const struct sign *s, enum watch_blame blame, struct error *e)
+{
+    return watch_count(r, s, blame == WATCH_OURS || (blame == WATCH_NOBODY && run_speaks(r)), e);
+}

@@ -4,6 +4,7 @@
 #define RUN_LOOP_STATE_H
 
 #include "io/log.h"
+#include "run/earlier.h"
 #include "run/loop.h"
 #include "run/measures.h"
 
@@ -16,6 +17,7 @@ struct loop {
     struct log log;
     struct measures measures;
     struct progress progress;
+    struct earlier earlier; /* of this folder */
     struct totals first, last;
     double energy_drift, momentum_drift[3], angular_drift[3];
     double begin, end, started;

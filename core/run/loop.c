@@ -238,7 +238,7 @@ static int loop_begin(struct loop *l, struct plan *plan, struct error *e)
     l->refused =
         run_init(&l->run, plan, l->options->threads, l->options->path, l->options->audit, e) ||
         (l->options->resume    ? loop_resume(l, e)
-         : run_speaks(&l->run) ? output_clear(l->out, e)
+         : run_speaks(&l->run) ? earlier_clear(&l->earlier, l->out, e)
                                : 0);
     if (l->refused)
         return -1;
@@ -312,8 +312,11 @@ static int tell(struct loop *l, struct error *e)
         return -1;
     if (!run_speaks(&l->run))
         return 0;
-    return loop_draw(l, e) || loop_summarise(l, was_stopped(l) ? "stopped" : "done", NULL, e) ? -1
-                                                                                              : 0;
+    if (loop_draw(l, e) || loop_summarise(l, was_stopped(l) ? "stopped" : "done", NULL, e))
+        return -1;
+    if (!was_stopped(l))
+        earlier_pass(&l->earlier, l->out, UINT64_MAX);
+    return 0;
 }
 
 int loop_run(struct plan *plan, const struct output *out, const struct loop_options *o,

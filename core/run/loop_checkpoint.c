@@ -136,6 +136,7 @@ int loop_checkpoint(struct loop *l, struct error *e)
     if (!status) {
         l->checkpointed = l->run.step;
         checkpoint_prune(l->out, l->scene->output.checkpoint.keep);
+        earlier_pass(&l->earlier, l->out, l->run.step);
     }
     free(temporary);
     l->run.cost.io += omp_get_wtime() - begin;
@@ -195,7 +196,8 @@ int loop_resume(struct loop *l, struct error *e)
     if (here)
         l->checkpointed = l->run.step;
     if (!here)
-        return output_clear(l->out, e);
+        return earlier_clear(&l->earlier, l->out, e);
+    earlier_find(&l->earlier, l->out);
     /* Whatever stands there of later is made again. */
     char *log = output_path(l->out, "log.csv");
     int status =

@@ -5,6 +5,7 @@
 
 #include "io/log.h"
 #include "io/summary.h"
+#include "run/earlier.h"
 #include "run/loop.h"
 #include "run/loop_ranks.h"
 #include "run/measures.h"
@@ -19,6 +20,7 @@ struct loop {
     struct measures measures;
     struct loop_ranks ranks;
     struct progress progress;
+    struct earlier earlier; /* of this folder */
     struct totals first, last;
     double energy_drift, momentum_drift[3], angular_drift[3];
     double begin, end, started;

@@ -1,6 +1,7 @@
 /* run/compare.c -- error norms against the exact solutions and the tables that the scene names. */
 #include "base/text.h"
 #include "plan/measured.h"
+#include "run/domain.h"
 #include "run/norms.h"
 #include "run/region.h"
 #include "run/report.h"
@@ -39,9 +40,9 @@ static int exact_columns(const struct plan_array *a, const sph_item *item, sph_c
     return 0;
 }
 
-static int add_error(struct summary_error **out, size_t *n, const struct plan_array *a,
-                     const char *field, const char *reference, const struct deviation *d,
-                     size_t outside, struct error *e)
+static int add_error(const struct run *r, struct summary_error **out, size_t *n,
+                     const struct plan_array *a, const char *field, const char *reference,
+                     const struct deviation *d, uint64_t outside, struct error *e)
 {
     struct summary_error *bigger = realloc(*out, (*n + 1) * sizeof *bigger);
     if (!bigger)
@@ -52,9 +53,8 @@ static int add_error(struct summary_error **out, size_t *n, const struct plan_ar
     bigger[*n].field = text_format("%s.%s", a->p.name, field);
     if (!bigger[*n].field)
         return error_memory(e, "errors", 1);
-    norms_of(a, d, &bigger[*n]);
     *n += 1;
-    return 0;
+    return norms_of(r, a, d, &bigger[*n - 1], e);
 }
 
 /* -- Exact solutions --------------------------------------------------------------------------- */
@@ -76,22 +76,22 @@ static void deviate(const struct plan_array *a, const struct column *f, const sp
 }
 
 /* The fields that the scene asks for of one property that the solution gives; all of it if it asks for none. */
-static int add_exact(const struct scene_compare *c, const struct plan_array *a, int column,
-                     const sph_column *exact, struct deviation *d, struct summary_error **out,
-                     size_t *n, struct error *e)
+static int add_exact(const struct run *r, const struct scene_compare *c, const struct plan_array *a,
+                     int column, const sph_column *exact, struct deviation *d,
+                     struct summary_error **out, size_t *n, struct error *e)
 {
     struct measured m;
     bool missing;
     const struct column *f = &a->p.column[column];
     if (c->n_fields == 0) {
         deviate(a, f, exact, NULL, d);
-        return add_error(out, n, a, f->name, c->exact, d, 0, e);
+        return add_error(r, out, n, a, f->name, c->exact, d, 0, e);
     }
     for (size_t k = 0; k < c->n_fields; k++) {
         if (measured_find(&a->p, c->fields[k], &m, &missing) || m.column != column)
             continue;
         deviate(a, f, exact, &m, d);
-        if (add_error(out, n, a, c->fields[k], c->exact, d, 0, e))
+        if (add_error(r, out, n, a, c->fields[k], c->exact, d, 0, e))
             return -1;
     }
     return 0;
@@ -122,13 +122,13 @@ static int compare_exact(const struct run *r, size_t index, const struct plan_ar
     if (!column)
         return error_memory(e, "a comparison", a->p.n);
     int status = exact_columns(a, use->item, column, e);
-    if (!status)
+    if (!status && a->p.n)
         status = exact_run(r, use, column, a->p.n, e);
     for (uint32_t k = 0; k < count; k++) {
         const sph_prop *prop = list_at(&use->item->props, k);
         const int f = particles_find(&a->p, prop->name);
         if ((prop->access & SPH_DST_WRITE) && !status && f >= 0)
-            status = add_exact(c, a, f, &column[k], d, out, n, e);
+            status = add_exact(r, c, a, f, &column[k], d, out, n, e);
         if (f < 0 || column[k].data != a->p.column[f].data)
             free(column[k].data);
     }
@@ -139,10 +139,11 @@ static int compare_exact(const struct run *r, size_t index, const struct plan_ar
 /* -- Tables ------------------------------------------------------------------------------------ */
 
 /* Particles beyond the table's ends do not count; how many are there. */
-static size_t leave_outside(const struct plan_array *a, const struct scene_compare *c,
-                            const struct table_column *along, size_t rows, double *at, bool *inside)
+static uint64_t leave_outside(const struct plan_array *a, const struct scene_compare *c,
+                              const struct table_column *along, size_t rows, double *at,
+                              bool *inside)
 {
-    size_t outside = 0;
+    uint64_t outside = 0;
     for (size_t i = 0; i < a->p.n; i++) {
         double x[3];
         measured_place(&a->p, a->position, i, x);
@@ -154,8 +155,8 @@ static size_t leave_outside(const struct plan_array *a, const struct scene_compa
     return outside;
 }
 
-static int add_table(const struct scene_compare *c, const struct plan_array *a,
-                     const struct table *t, const double *at, size_t outside, const char *field,
+static int add_table(const struct run *r, const struct scene_compare *c, const struct plan_array *a,
+                     const struct table *t, const double *at, uint64_t outside, const char *field,
                      const char *column, struct deviation *d, struct summary_error **out, size_t *n,
                      struct error *e)
 {
@@ -174,7 +175,7 @@ static int add_table(const struct scene_compare *c, const struct plan_array *a,
         d->d2[i] = difference * difference;
         d->s2[i] = star * star;
     }
-    return add_error(out, n, a, field, plan_table_source(c->table), d, outside, e);
+    return add_error(r, out, n, a, field, plan_table_source(c->table), d, outside, e);
 }
 
 static int compare_table(const struct run *r, size_t index, const struct plan_array *a,
@@ -187,14 +188,14 @@ static int compare_table(const struct run *r, size_t index, const struct plan_ar
     double *at = malloc((a->p.n + 1) * sizeof *at);
     if (!at)
         return error_memory(e, "a comparison", a->p.n * sizeof *at);
-    const size_t outside = leave_outside(a, c, &t->column[along], t->n, at, d->inside);
-    int status = 0;
+    uint64_t outside = leave_outside(a, c, &t->column[along], t->n, at, d->inside);
+    int status = run_share_count(r, &outside, e);
     for (size_t k = 0; k < c->n_fields && !status; k++)
-        status = add_table(c, a, t, at, outside, c->fields[k], c->columns[k], d, out, n, e);
+        status = add_table(r, c, a, t, at, outside, c->fields[k], c->columns[k], d, out, n, e);
     for (size_t k = 0; k < t->n_column && !c->n_fields && !status; k++)
         if (k != along)
-            status =
-                add_table(c, a, t, at, outside, t->column[k].name, t->column[k].name, d, out, n, e);
+            status = add_table(r, c, a, t, at, outside, t->column[k].name, t->column[k].name, d,
+                               out, n, e);
     free(at);
     return status;
 }
@@ -211,7 +212,10 @@ int compare_take(const struct run *r, size_t index, struct summary_error **out, 
     for (size_t k = 0; k < plan->n_array; k++)
         if (strcmp(plan->array[k].p.name, c->array) == 0)
             a = &plan->array[k];
-    if (!a || a->p.n == 0)
+    uint64_t there = a ? a->p.n : 0;
+    if (run_share_count(r, &there, e))
+        return -1;
+    if (there == 0)
         return 0;
     int status = deviation_init(&d, a->p.n, e);
     if (!status)

@@ -145,7 +145,7 @@ static int after_step(struct loop *l, struct error *e)
                           "the energy is no longer a number");
     if (logged && (watch_energy(r, &l->first, &l->last, e) || loop_log(l, e)))
         return -1;
-    if (!last && !r->domain && measures_due(&l->measures) &&
+    if (!last && measures_due(&l->measures) &&
         (run_look(r, e) || measures_take(&l->measures, MEASURES_ON_THE_WAY, e)))
         return -1;
     watch_step(r);
@@ -174,8 +174,7 @@ static int start(struct loop *l, struct error *e)
     l->ended = finished(l);
     if (run_fetch(r, e))
         return -1;
-    return loop_log(l, e) || loop_snapshot(l, e) ||
-                   (!r->domain && measures_take(&l->measures, MEASURES_START, e))
+    return loop_log(l, e) || loop_snapshot(l, e) || measures_take(&l->measures, MEASURES_START, e)
                ? -1
                : 0;
 }
@@ -207,7 +206,7 @@ static int steps(struct loop *l, struct error *e)
     }
     if (run_fetch(r, e))
         return -1;
-    if (!r->domain && measures_take(&l->measures, MEASURES_END, e))
+    if (measures_take(&l->measures, MEASURES_END, e))
         return -1;
     r->cost.loop = loop_seconds(l);
     return loop_snapshot(l, e);
@@ -234,12 +233,11 @@ static int loop_begin(struct loop *l, struct plan *plan, struct error *e)
         return -1;
     progress_start(&l->progress, l->options->progress && run_speaks(&l->run), l->begin, l->end);
     l->progress.started -= omp_get_wtime() - l->started; /* a run that goes on has begun earlier */
-    if (!run_speaks(&l->run))
-        return 0;
     char *path = output_path(l->out, "log.csv");
-    int status = !path                ? error_memory(e, "a path", 1)
-                 : l->options->resume ? log_append(&l->log, path, plan->dim, e)
-                                      : log_open(&l->log, path, plan->dim, e);
+    int status = !path                  ? error_memory(e, "a path", 1)
+                 : !run_speaks(&l->run) ? 0
+                 : l->options->resume   ? log_append(&l->log, path, plan->dim, e)
+                                        : log_open(&l->log, path, plan->dim, e);
     free(path);
     if (!status)
         status = measures_open(&l->measures, &l->run, l->out, l->options->resume != NULL, e);

@@ -1,6 +1,7 @@
 /* run/measures.c -- the moments of measures, their files and rows: see measures.h. */
 #include "run/measures.h"
 #include "base/text.h"
+#include "run/domain.h"
 #include "run/norms.h"
 #include "run/report.h"
 #include "run/sample.h"
@@ -119,8 +120,10 @@ typedef void put_head(const struct measures *m, size_t i, struct csv *to);
 static int open_file(struct measures *m, struct csv *csv, const char *name, bool resumed,
                      put_head *put, size_t i, struct error *e)
 {
-    char *path = output_path(m->out, name), *line = NULL;
     size_t length = 0;
+    if (!run_speaks(m->run))
+        return 0;
+    char *path = output_path(m->out, name), *line = NULL;
     struct csv head = {.file = open_memstream(&line, &length)};
     int status = path && head.file ? 0 : error_memory(e, "a path", strlen(name));
     if (!status && resumed)
@@ -185,6 +188,18 @@ static int open_profile(struct measures *m, size_t i, bool resumed, struct error
                        profile_head, i, e);
 }
 
+/* Which comparisons are behind is read from a file by one rank. */
+static int share_taken(struct measures *m, struct error *e)
+{
+    for (size_t i = 0; i < m->run->plan->scene->n_compare; i++) {
+        uint64_t taken = m->errors_of[i].taken;
+        if (run_share_count(m->run, &taken, e))
+            return -1;
+        m->errors_of[i].taken = taken > 0;
+    }
+    return 0;
+}
+
 int measures_open(struct measures *m, struct run *r, const struct output *out, bool resumed,
                   struct error *e)
 {
@@ -222,7 +237,7 @@ int measures_open(struct measures *m, struct run *r, const struct output *out, b
         for (size_t i = 0; i < n; i++)
             passed(m, &list[i], r->time - r->dt);
     }
-    return status || (resumed && measures_restore(m, e)) ? -1 : 0;
+    return status || (resumed && (measures_restore(m, e) || share_taken(m, e))) ? -1 : 0;
 }
 
 /* -- Rows -------------------------------------------------------------------------------------- */
@@ -279,7 +294,8 @@ static int take_compare(struct measures *m, size_t i, bool end, struct error *e)
         return -1;
     for (size_t k = 0; timed && k < q->n; k++)
         q->error[k].time = m->run->time;
-    return moments_any(&c->when) && !is_written(m, &m->compare[i]) ? put_errors(m, i, e) : 0;
+    const bool wanted = moments_any(&c->when) && !is_written(m, &m->compare[i]);
+    return wanted && run_speaks(m->run) ? put_errors(m, i, e) : 0;
 }
 
 static int take_probe(struct measures *m, size_t i, struct error *e)
@@ -291,7 +307,7 @@ static int take_probe(struct measures *m, size_t i, struct error *e)
     if (points ? sample_take(m->run, &p->sample, m->value[i], e)
                : probe_take(m->run, i, m->value[i], e))
         return -1;
-    if (!m->probe[i].on_file || is_written(m, &m->probe[i]))
+    if (!m->probe[i].on_file || is_written(m, &m->probe[i]) || !run_speaks(m->run))
         return 0;
     for (size_t k = 0; k < (points ? p->sample.n_point : 1); k++) {
         begin_row(m, csv);
@@ -311,24 +327,13 @@ static double distance(const double *a, const double *b)
                 (a[2] - b[2]) * (a[2] - b[2]));
 }
 
-static int take_profile(struct measures *m, size_t i, struct error *e)
+/* value[n][width], reference[n][n_of]: of n bins or points. */
+static int put_profile(struct measures *m, size_t i, const double *value, size_t width,
+                       const double *reference, size_t n, struct error *e)
 {
     const struct scene_profile *p = &m->run->plan->scene->profile[i];
     struct csv *csv = &m->profile[i].csv;
-    const size_t n_of = p->sample.n_of, n = p->bins ? p->bins : p->sample.n_point;
-    const size_t width = p->bins ? 2 * n_of + 1 : n_of + 1;
     size_t unused;
-    if (is_written(m, &m->profile[i]))
-        return 0;
-    double *value = malloc(n * (width + n_of) * sizeof *value);
-    if (!value)
-        return error_memory(e, "a profile", n * width * sizeof *value);
-    double *reference = value + n * width;
-    if ((p->bins ? profile_bins(m->run, p, value, e) : sample_take(m->run, &p->sample, value, e)) ||
-        (p->reference.node && profile_reference(m->run, i, n, reference, e))) {
-        free(value);
-        return -1;
-    }
     for (size_t k = 0; k < n; k++) {
         const double *point = p->sample.point + 3 * k;
         begin_row(m, csv);
@@ -339,13 +344,33 @@ static int take_profile(struct measures *m, size_t i, struct error *e)
             put_numbers(csv, point, (size_t)m->run->plan->dim);
         }
         put_numbers(csv, value + k * width, width);
-        for (size_t q = 0; q < n_of; q++)
+        for (size_t q = 0; q < p->sample.n_of; q++)
             if (plan_profile_gives(m->run->plan, i, q, &unused))
-                csv_number(csv, reference[k * n_of + q]);
+                csv_number(csv, reference[k * p->sample.n_of + q]);
         csv_end_row(csv);
     }
-    free(value);
     return csv_commit(csv, e);
+}
+
+static int take_profile(struct measures *m, size_t i, struct error *e)
+{
+    const struct scene_profile *p = &m->run->plan->scene->profile[i];
+    const size_t n_of = p->sample.n_of, n = p->bins ? p->bins : p->sample.n_point;
+    const size_t width = p->bins ? 2 * n_of + 1 : n_of + 1;
+    if (is_written(m, &m->profile[i]))
+        return 0;
+    double *value = malloc(n * (width + n_of) * sizeof *value);
+    if (!value)
+        return error_memory(e, "a profile", n * width * sizeof *value);
+    double *reference = value + n * width;
+    int status =
+        p->bins ? profile_bins(m->run, p, value, e) : sample_take(m->run, &p->sample, value, e);
+    if (!status && p->reference.node)
+        status = profile_reference(m->run, i, n, reference, e);
+    if (!status && run_speaks(m->run))
+        status = put_profile(m, i, value, width, reference, n, e);
+    free(value);
+    return status;
 }
 
 /* -- The end ----------------------------------------------------------------------------------- */
@@ -410,6 +435,8 @@ static int finish(struct measures *m, struct error *e)
 {
     const struct scene *s = m->run->plan->scene;
     size_t n = 0;
+    if (!run_speaks(m->run))
+        return 0;
     for (size_t i = 0; i < s->n_compare; i++)
         n += m->errors_of[i].n;
     free(m->error);

@@ -5,7 +5,8 @@
  * moments; no step is cut for it, and the row has the step's own time. (Comparisons: not at the start, unless a
  * moment says so.) What is measured is what a snapshot would hold then: places and what else is integrated are
  * of that time; what functions derive is from the step's last evaluation, which some integrators make in
- * mid-step. At the end all is of the end. Nothing of the run is changed. */
+ * mid-step. At the end all is of the end. Nothing of the run is changed. Of several ranks all take what is due, and
+ * have the values; the first alone has files and the summary. */
 #ifndef RUN_MEASURES_H
 #define RUN_MEASURES_H
 

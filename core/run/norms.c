@@ -1,6 +1,8 @@
 /* run/norms.c -- norms over particles and over time. Reads, touches nothing. */
 #include "run/norms.h"
-#include "run/region.h"
+#include "run/domain.h"
+#include "run/foremost.h"
+#include "run/sums.h"
 #include <math.h>
 #include <stdlib.h>
 
@@ -20,37 +22,82 @@ void deviation_fini(struct deviation *d)
     *d = (struct deviation){0};
 }
 
-void norms_of(const struct plan_array *a, const struct deviation *d, struct summary_error *out)
+enum { VOLUME, SCALE, SCALE2, L1, L2, SUMS };
+
+/* Whether particle i is farther off than the worst so far. Of equals it is the first, or where bits may not depend
+ * on how particles stand that of the smallest id. */
+static bool is_worse(const struct run *r, const struct plan_array *a, const double *d2, size_t i,
+                     size_t worst)
+{
+    const int64_t *id = a->p.column[a->id].data;
+    if (worst == SIZE_MAX || d2[i] > d2[worst])
+        return true;
+    if (!r->plan->strict)
+        return false;
+    if (isnan(d2[worst]) && !isnan(d2[i]))
+        return true;
+    return !isnan(d2[i]) == !isnan(d2[worst]) && !(d2[i] < d2[worst]) && id[i] < id[worst];
+}
+
+/* Where the largest of all is. */
+static int find_worst(const struct run *r, const struct plan_array *a, const struct deviation *d,
+                      size_t worst, double at[3], struct error *e)
+{
+    const bool any = worst != SIZE_MAX;
+    struct foremost f = {.key = NAN};
+    if (any) {
+        f.key = isnan(d->d2[worst]) ? -1.0 : d->d2[worst];
+        f.id = ((const int64_t *)a->p.column[a->id].data)[worst];
+    }
+    for (int c = 0; c < 3; c++)
+        at[c] =
+            any && c < a->p.dim ? column_get(&a->p.column[a->position], (uint32_t)c, worst) : NAN;
+    return foremost_find(r, &f, at, 3 * sizeof *at, e);
+}
+
+static int share(const struct run *r, const struct plan_array *a, const struct deviation *d,
+                 size_t worst, struct sums *sum, struct summary_error *out, struct error *e)
+{
+    static const uint32_t op = SPH_REDUCE_MAX;
+    if (sums_share(sum, r, e) || run_share_count(r, &out->n, e) ||
+        run_share_numbers(r, &out->linf, &op, 1, e) || find_worst(r, a, d, worst, out->linf_at, e))
+        return -1;
+    out->l1 = sum->value[L1] / sum->value[VOLUME];
+    out->l1_rel = sum->value[L1] / sum->value[SCALE];
+    out->l2 = sqrt(sum->value[L2] / sum->value[VOLUME]);
+    out->l2_rel = sqrt(sum->value[L2] / sum->value[SCALE2]);
+    if (out->n == 0)
+        out->linf = NAN;
+    return 0;
+}
+
+int norms_of(const struct run *r, const struct plan_array *a, const struct deviation *d,
+             struct summary_error *out, struct error *e)
 {
     const int rho = particles_find(&a->p, "rho");
-    double volume = 0.0, scale = 0.0, scale2 = 0.0, l1 = 0.0, l2 = 0.0;
     size_t worst = SIZE_MAX;
+    struct sums sum;
+    int status = sums_open(&sum, r, SUMS, e);
     out->linf = 0.0;
-    for (size_t i = 0; i < a->p.n; i++) {
+    for (size_t i = 0; !status && i < a->p.n; i++) {
         if (!d->inside[i])
             continue;
         const double density = rho < 0 ? 1.0 : column_get(&a->p.column[rho], 0, i);
         const double v = rho < 0 ? 1.0 : column_get(&a->p.column[a->mass], 0, i) / density;
-        volume += v;
-        scale += v * sqrt(d->s2[i]);
-        scale2 += v * d->s2[i];
-        l1 += v * sqrt(d->d2[i]);
-        l2 += v * d->d2[i];
+        sums_add(&sum, VOLUME, v);
+        sums_add(&sum, SCALE, v * sqrt(d->s2[i]));
+        sums_add(&sum, SCALE2, v * d->s2[i]);
+        sums_add(&sum, L1, v * sqrt(d->d2[i]));
+        sums_add(&sum, L2, v * d->d2[i]);
         out->linf = fmax(out->linf, sqrt(d->d2[i]));
-        if (worst == SIZE_MAX || d->d2[i] > d->d2[worst])
+        if (is_worse(r, a, d->d2, i, worst))
             worst = i;
         out->n++;
     }
-    out->l1 = l1 / volume;
-    out->l1_rel = l1 / scale;
-    out->l2 = sqrt(l2 / volume);
-    out->l2_rel = sqrt(l2 / scale2);
-    if (worst == SIZE_MAX)
-        out->linf = NAN;
-    for (int c = 0; c < 3; c++)
-        out->linf_at[c] = worst != SIZE_MAX && c < a->p.dim
-                              ? column_get(&a->p.column[a->position], (uint32_t)c, worst)
-                              : NAN;
+    if (!status)
+        status = share(r, a, d, worst, &sum, out, e);
+    sums_close(&sum);
+    return status;
 }
 
 /* -- Over time --------------------------------------------------------------------------------- */

@@ -2,6 +2,7 @@
 #include "plan/measured.h"
 #include "run/region.h"
 #include "run/report.h"
+#include "run/sums.h"
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,12 +17,29 @@ static size_t bin_of(const struct scene_profile *p, int dim, const double x[3])
     return q < (double)p->bins ? (size_t)q : p->bins - 1;
 }
 
-/* One array's part of the sums; with `squares`, once these are means, of the sums of squares about
- * them. */
-static void add_array(const struct scene_profile *p, const struct plan_array *a,
-                      const struct measured *m, const bool *inside, bool squares, double *row,
-                      double *volume)
+/* Sums of one going through the particles, of each bin. First of V f, how many there are, and of V; then, with
+ * means known, of the squares about them. */
+struct binned {
+    const struct run *r;
+    const struct scene_profile *p;
+    bool squares;
+    double *row; /* [bins][2 n_of + 1]: see profile_bins */
+    struct sums sum;
+};
+
+/* Of a bin: those of n_of properties, then these. */
+enum { NUMBER, VOLUME, MORE };
+
+static size_t place(const struct binned *q, size_t bin, size_t k)
 {
+    return bin * (q->p->sample.n_of + MORE) + k;
+}
+
+/* One array's part of the sums. */
+static void add_array(struct binned *q, const struct plan_array *a, const struct measured *m,
+                      const bool *inside)
+{
+    const struct scene_profile *p = q->p;
     const struct particles *all = &a->p;
     const size_t n_of = p->sample.n_of, width = 2 * n_of + 1;
     const int rho = particles_find(all, "rho");
@@ -33,35 +51,36 @@ static void add_array(const struct scene_profile *p, const struct plan_array *a,
         if (b == p->bins || !(density > 0.0))
             continue;
         const double v = column_get(&all->column[a->mass], 0, i) / density;
-        double *to = row + b * width;
         for (size_t k = 0; k < n_of; k++) {
             const double f = measured_value(all, &m[k], &p->sample.about, i, x, 0);
-            if (squares)
-                to[2 * k + 1] += v * (f - to[2 * k]) * (f - to[2 * k]);
-            else
-                to[2 * k] += v * f;
+            const double d = q->squares ? f - q->row[b * width + 2 * k] : 0.0;
+            sums_add(&q->sum, place(q, b, k), q->squares ? v * d * d : v * f);
         }
-        if (!squares) {
-            to[2 * n_of] += 1.0;
-            volume[b] += v;
-        }
+        if (!q->squares)
+            sums_add(&q->sum, place(q, b, n_of + NUMBER), 1.0);
+        sums_add(&q->sum, place(q, b, n_of + VOLUME), v);
     }
 }
 
-static void divide(const struct scene_profile *p, bool squares, const double *volume, double *row)
+static void divide(const struct binned *q)
 {
-    const size_t width = 2 * p->sample.n_of + 1;
-    for (size_t b = 0; b < p->bins; b++)
-        for (size_t k = 0; k < p->sample.n_of; k++) {
-            double *to = row + b * width + 2 * k + (squares ? 1 : 0);
-            *to = volume[b] > 0.0 ? *to / volume[b] : NAN;
-            *to = squares ? sqrt(*to) : *to;
+    const size_t n_of = q->p->sample.n_of, width = 2 * n_of + 1;
+    for (size_t b = 0; b < q->p->bins; b++) {
+        const double *sum = q->sum.value + place(q, b, 0), volume = sum[n_of + VOLUME];
+        double *to = q->row + b * width;
+        for (size_t k = 0; k < n_of; k++) {
+            const double mean = volume > 0.0 ? sum[k] / volume : NAN;
+            to[2 * k + q->squares] = q->squares ? sqrt(mean) : mean;
         }
+        if (!q->squares)
+            to[2 * n_of] = sum[n_of + NUMBER];
+    }
 }
 
-static int add_named(const struct run *r, const struct scene_profile *p, const char *name,
-                     bool squares, double *row, double *volume, struct error *e)
+static int add_named(struct binned *q, const char *name, struct error *e)
 {
+    const struct run *r = q->r;
+    const struct scene_profile *p = q->p;
     const struct plan_array *a = NULL;
     bool missing;
     for (size_t k = 0; k < r->plan->n_array; k++)
@@ -75,7 +94,7 @@ static int add_named(const struct run *r, const struct scene_profile *p, const c
     if (!status)
         status = region_select(a, p->where, inside, e);
     if (!status)
-        add_array(p, a, m, inside, squares, row, volume);
+        add_array(q, a, m, inside);
     free(m);
     free(inside);
     return status;
@@ -83,15 +102,18 @@ static int add_named(const struct run *r, const struct scene_profile *p, const c
 
 int profile_bins(const struct run *r, const struct scene_profile *p, double *row, struct error *e)
 {
-    double *volume = calloc(p->bins, sizeof *volume);
-    int status = volume ? 0 : error_memory(e, "a profile", p->bins * sizeof *volume);
-    memset(row, 0, p->bins * (2 * p->sample.n_of + 1) * sizeof *row);
+    const size_t n = p->bins * (p->sample.n_of + MORE);
+    int status = 0;
     for (int squares = 0; squares < 2 && !status; squares++) {
+        struct binned q = {.r = r, .p = p, .squares = squares, .row = row};
+        status = sums_open(&q.sum, r, n, e);
         for (size_t a = 0; a < p->sample.n_array && !status; a++)
-            status = add_named(r, p, p->sample.array[a], squares, row, volume, e);
+            status = add_named(&q, p->sample.array[a], e);
         if (!status)
-            divide(p, squares, volume, row);
+            status = sums_share(&q.sum, r, e);
+        if (!status)
+            divide(&q);
+        sums_close(&q.sum);
     }
-    free(volume);
     return status;
 }

@@ -2,10 +2,16 @@
 #include "run/sample.h"
 #include "plan/measured.h"
 #include "registry/kernel_form.h"
+#include "run/sums.h"
 #include <stdlib.h>
 #include <string.h>
 
 #define BLOCK 128
+/* Exact sums are large: those of so many values at a time. */
+#define VALUES_EXACT 20000
+/* Whether a particle that just touches a point counts is decided by its own distance alone, whatever block it
+ * stands in. */
+#define NEARLY (1.0 + 1e-12)
 
 /* Where the particles of a block, or of an array, are, and how far they reach. */
 struct bounds {
@@ -83,7 +89,8 @@ static int cloud_init(struct cloud_of *c, const struct run *r, const struct scen
             double x[3];
             measured_place(p, c->array->position, i, x);
             bounds_add(&c->block[b], x,
-                       plan->kernel.support * column_get(&p->column[c->array->smoothing], 0, i));
+                       plan->kernel.support * column_get(&p->column[c->array->smoothing], 0, i) *
+                           (plan->strict ? NEARLY : 1.0));
         }
     }
     c->all = nowhere;
@@ -119,9 +126,10 @@ static bool image_make(const struct box *box, int dim, const double *point, int 
     return true;
 }
 
-/* Adds what particles [first, end) give to the sums at a point: V W f of each property, then V W. */
+/* Adds what particles [first, end) give to the sums at a point: V W f of each property, then V W; from sum `at` on. */
 static void add_block(const struct run *r, const struct cloud_of *c, const struct scene_sample *s,
-                      const struct image *image, size_t first, size_t end, double *sum)
+                      const struct image *image, size_t first, size_t end, struct sums *sum,
+                      size_t at)
 {
     const struct particles *p = &c->array->p;
     const sph_kernel_form *kernel = &r->plan->kernel;
@@ -140,17 +148,17 @@ static void add_block(const struct run *r, const struct cloud_of *c, const struc
         for (int k = 0; k < p->dim; k++)
             x[k] = image->mirrored >> k & 1u ? image->turn[k] - x[k] : x[k] + image->shift[k];
         for (size_t k = 0; k < s->n_of; k++)
-            sum[k] += w * measured_value(p, &c->of[k], &s->about, i, x, image->mirrored);
-        sum[s->n_of] += w;
+            sums_add(sum, at + k,
+                     w * measured_value(p, &c->of[k], &s->about, i, x, image->mirrored));
+        sums_add(sum, at + s->n_of, w);
     }
 }
 
 static void take_point(const struct run *r, const struct cloud_of *cloud,
-                       const struct scene_sample *s, const double *point, double *sum)
+                       const struct scene_sample *s, const double *point, struct sums *sum,
+                       size_t at)
 {
     const int dim = r->plan->dim, images = dim == 1 ? 3 : dim == 2 ? 9 : 27;
-    for (size_t k = 0; k <= s->n_of; k++)
-        sum[k] = 0.0;
     for (size_t a = 0; a < s->n_array; a++) {
         const struct cloud_of *c = &cloud[a];
         for (int k = 0; k < images; k++) {
@@ -162,12 +170,34 @@ static void take_point(const struct run *r, const struct cloud_of *cloud,
                 const size_t end =
                     (b + 1) * BLOCK < c->array->p.n ? (b + 1) * BLOCK : c->array->p.n;
                 if (within_reach(&c->block[b], image.x))
-                    add_block(r, c, s, &image, b * BLOCK, end, sum);
+                    add_block(r, c, s, &image, b * BLOCK, end, sum, at);
             }
         }
     }
-    for (size_t k = 0; k < s->n_of && !s->plain; k++)
-        sum[k] = sum[s->n_of] < SAMPLE_LEAST ? NAN : sum[k] / sum[s->n_of];
+}
+
+/* Of points [first, end). */
+static int take_points(const struct run *r, const struct cloud_of *cloud,
+                       const struct scene_sample *s, size_t first, size_t end, double *value,
+                       struct error *e)
+{
+    const size_t width = s->n_of + 1;
+    struct sums sum;
+    int status = sums_open(&sum, r, (end - first) * width, e);
+    if (!status) {
+#pragma omp parallel for schedule(dynamic, 1) num_threads(r->threads) if (end - first > 1)
+        for (size_t i = first; i < end; i++)
+            take_point(r, cloud, s, s->point + 3 * i, &sum, (i - first) * width);
+        status = sums_share(&sum, r, e);
+    }
+    for (size_t i = first; !status && i < end; i++) {
+        const double *of = sum.value + (i - first) * width, all = of[s->n_of];
+        for (size_t k = 0; k < s->n_of; k++)
+            value[i * width + k] = s->plain ? of[k] : all < SAMPLE_LEAST ? NAN : of[k] / all;
+        value[i * width + s->n_of] = all;
+    }
+    sums_close(&sum);
+    return status;
 }
 
 int sample_take(const struct run *r, const struct scene_sample *s, double *value, struct error *e)
@@ -176,11 +206,10 @@ int sample_take(const struct run *r, const struct scene_sample *s, double *value
     int status = cloud ? 0 : error_memory(e, "values at points", s->n_array * sizeof *cloud);
     for (size_t a = 0; a < s->n_array && !status; a++)
         status = cloud_init(&cloud[a], r, s, s->array[a], e);
-    if (!status) {
-#pragma omp parallel for schedule(dynamic, 1) num_threads(r->threads) if (s->n_point > 1)
-        for (size_t i = 0; i < s->n_point; i++)
-            take_point(r, cloud, s, s->point + 3 * i, value + i * (s->n_of + 1));
-    }
+    const size_t most = r->plan->strict ? VALUES_EXACT / (s->n_of + 1) + 1 : s->n_point;
+    for (size_t first = 0; first < s->n_point && !status; first += most)
+        status = take_points(r, cloud, s, first,
+                             s->n_point - first < most ? s->n_point : first + most, value, e);
     for (size_t a = 0; cloud && a < s->n_array; a++)
         cloud_fini(&cloud[a]);
     free(cloud);

@@ -10,8 +10,8 @@
 /* Below this sum of V W a point has too few neighbours for a value: NaN, unless the division is left out. */
 #define SAMPLE_LEAST 0.1
 
-/* value[n_point][n_of + 1]: the values asked for, then the sum of V W. The sums are over particles in their
- * order: the same bits for any number of threads. Particles out of reach are left out in blocks by their bounds,
+/* value[n_point][n_of + 1]: the values asked for, then the sum of V W. The sums are over particles of all ranks
+ * (sums.h), of a rank in their order: the same bits for any number of threads. Particles out of reach are left out in blocks by their bounds,
  * so that a point costs about a look at each block. */
 int sample_take(const struct run *r, const struct scene_sample *s, double *value, struct error *e);
 

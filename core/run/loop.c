@@ -295,8 +295,7 @@ static void keep_failed(struct loop *l, const struct error *e)
     } else if (l->run.step > 0 || (l->run.watch && l->run.watch->failure.happened)) {
         run_domain_agree(&l->run, loop_snapshot(l, &ignored), &ignored);
         ignored = (struct error){0};
-        if (!l->run.domain)
-            loop_checkpoint_failed(l, e->text, &ignored);
+        run_domain_agree(&l->run, loop_checkpoint_failed(l, e->text, &ignored), &ignored);
     }
     ignored = (struct error){0};
     run_domain_agree(&l->run, gather(l, &ignored), &ignored);

@@ -27,6 +27,7 @@ struct loop {
     double full; /* the last step's dt before it was cut to end on time */
     uint64_t max_steps, snapshots, next_output;
     double next_log;
+    double was_every, was_log_every; /* output.every and output.log.every of the run that goes on */
     double loop_begun, loop_io; /* what cost.loop is measured from: the clock, and cost.io then */
     bool stopped;               /* some rank has been asked to stop */
     bool apart;                 /* ranks stand at different steps: one has failed */

@@ -238,7 +238,6 @@ for cause in ("not-finite", "density", "internal-energy", "escaped", "time-step"
     stops(cause, scene_of(cause), 3, alone=cause not in ("density", "internal-energy"))
 # Seen in the rates alone, which those nearby have spoilt as well: still it is he who is named.
 stops("not-finite", scene_of("not-finite"), 3, "--set", "output.log.steps=1000")
-stops("not-finite", scene_of("not-finite"), 4, "--set", "output.log.steps=1000")
 periodic = {"min": [-1, -1], "max": [1, 1], "sides": {"x": "periodic", "y": "periodic"}}
 for above in (6000, 1e6):
     stops(f"neighbours above {above}", changed(scene_of("neighbours"), domain=periodic, watch={"neighbours": {"above": above}}), 3)

@@ -209,6 +209,10 @@ for n in (2, 3, 4):
     where = differs(one.tables(), other.tables())
     expect(f"breeding, {n} ranks: the same tables", where is None, where)
 
+# What all ranks would say, one does.
+result = run(breeding, 3, "--device", "opencl:0", "--steps", "1")
+expect("a warning is said once", len(result.job.said) == 1, result.job.stderr)
+
 # -- The watch ----------------------------------------------------------------------------------------
 
 

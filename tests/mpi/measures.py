@@ -29,10 +29,11 @@ class Folder:
         return os.path.join(self.out, name)
 
     def tables(self):
-        """Text of every table; of the log all but the last column, which is the clock's."""
+        """Text of every table but that of the ranks themselves; of the log all but the last column, which is the
+        clock's."""
         found = {}
         for name in sorted(os.listdir(self.out)):
-            if name.endswith(".csv"):
+            if name.endswith(".csv") and name != "ranks.csv":
                 with open(self.path(name), newline="") as file:
                     rows = list(csv.reader(file))
                 found[name] = [row[:-1] for row in rows] if name == "log.csv" else rows

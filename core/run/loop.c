@@ -238,7 +238,7 @@ static int loop_begin(struct loop *l, struct plan *plan, struct error *e)
     l->refused =
         run_init(&l->run, plan, l->options->threads, l->options->path, l->options->audit, e) ||
         (l->options->resume    ? loop_resume(l, e)
-         : run_speaks(&l->run) ? output_clear(l->out, e)
+         : run_speaks(&l->run) ? earlier_clear(&l->earlier, l->out, e)
                                : 0);
     if (l->refused)
         return -1;
@@ -289,13 +289,13 @@ static void keep_failed(struct loop *l, const struct error *e)
     struct error ignored = {0};
     bool lost;
     run_device_failed(&l->run, &lost);
+    watch_share_failure(&l->run, &ignored);
     if (lost || l->apart) {
         /* The columns here are of different times. */
     } else if (l->run.step > 0 || (l->run.watch && l->run.watch->failure.happened)) {
         run_domain_agree(&l->run, loop_snapshot(l, &ignored), &ignored);
         ignored = (struct error){0};
-        if (!l->run.domain)
-            loop_checkpoint_failed(l, e->text, &ignored);
+        run_domain_agree(&l->run, loop_checkpoint_failed(l, e->text, &ignored), &ignored);
     }
     ignored = (struct error){0};
     run_domain_agree(&l->run, gather(l, &ignored), &ignored);
@@ -311,8 +311,11 @@ static int tell(struct loop *l, struct error *e)
         return -1;
     if (!run_speaks(&l->run))
         return 0;
-    return loop_draw(l, e) || loop_summarise(l, was_stopped(l) ? "stopped" : "done", NULL, e) ? -1
-                                                                                              : 0;
+    if (loop_draw(l, e) || loop_summarise(l, was_stopped(l) ? "stopped" : "done", NULL, e))
+        return -1;
+    if (!was_stopped(l))
+        earlier_pass(&l->earlier, l->out, UINT64_MAX);
+    return 0;
 }
 
 int loop_run(struct plan *plan, const struct output *out, const struct loop_options *o,
@@ -322,6 +325,8 @@ int loop_run(struct plan *plan, const struct output *out, const struct loop_opti
     int status = loop_begin(&l, plan, e);
     if (!status)
         status = steps(&l, e);
+    if (status && l.run.domain && !l.refused)
+        tell_device(&l, e);
     status = run_domain_agree(&l.run, status, e);
     progress_end(&l.progress);
     if (!status)

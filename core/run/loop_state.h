@@ -5,6 +5,7 @@
 
 #include "io/log.h"
 #include "io/summary.h"
+#include "run/earlier.h"
 #include "run/loop.h"
 #include "run/loop_ranks.h"
 #include "run/measures.h"
@@ -19,12 +20,14 @@ struct loop {
     struct measures measures;
     struct loop_ranks ranks;
     struct progress progress;
+    struct earlier earlier; /* of this folder */
     struct totals first, last;
     double energy_drift, momentum_drift[3], angular_drift[3];
     double begin, end, started;
     double full; /* the last step's dt before it was cut to end on time */
     uint64_t max_steps, snapshots, next_output;
     double next_log;
+    double was_every, was_log_every; /* output.every and output.log.every of the run that goes on */
     double loop_begun, loop_io; /* what cost.loop is measured from: the clock, and cost.io then */
     bool stopped;               /* some rank has been asked to stop */
     bool apart;                 /* ranks stand at different steps: one has failed */

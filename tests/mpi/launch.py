@@ -41,9 +41,9 @@ def wrapper(folder, name, text):
 class Job:
     """An mpirun under way, with all that it starts in a session of its own."""
 
-    def __init__(self, ranks, *words, options=(), env=None):
+    def __init__(self, ranks, *words, options=(), before=(), env=None):
         self.begin = time.monotonic()
-        self.process = subprocess.Popen([*MPIRUN, *options, *(["-n", str(ranks)] if ranks else []), *words],
+        self.process = subprocess.Popen([*before, *MPIRUN, *options, "-n", str(ranks), *words],
                                         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                                         env={**ENVIRONMENT, **(env or {})}, start_new_session=True)
 

@@ -15,6 +15,7 @@ const char *const partitioner_name[PARTITIONERS] = {"rcb", "rib", "hsfc"};
 
 struct partition {
     struct Zoltan_Struct *zoltan;
+    enum partitioner which;
     int dim;
     /* While it cuts. */
     const double *const *x;
@@ -106,6 +107,7 @@ int partition_open(struct partition **out, enum partitioner which, int dim, stru
     if (!p)
         return error_memory(e, "the domain", sizeof *p);
     p->dim = dim;
+    p->which = which;
     if (Zoltan_Initialize(0, NULL, &version) == ZOLTAN_OK)
         p->zoltan = Zoltan_Create(MPI_COMM_WORLD);
     return p->zoltan && set(p, which) == 0 ? 0 : error_set(e, EXIT_RUN, "Zoltan does not start");
@@ -135,6 +137,36 @@ int partition_cut(struct partition *p, const double *const *x, const float *weig
     Zoltan_LB_Free_Part(&import_global, &import_local, &import_from, &import_part);
     Zoltan_LB_Free_Part(&export_global, &export_local, &export_to, &export_part);
     return 0;
+}
+
+/* Zoltan can do so for bisection by coordinates alone. */
+int partition_store(const struct partition *p, struct store *s, struct error *e)
+{
+    if (p->which != PARTITION_RCB)
+        return 0;
+    size_t n = Zoltan_Serialize_Size(p->zoltan);
+    char *cuts = calloc(n + 1, 1);
+    int status = cuts ? 0 : error_memory(e, "the domain", n);
+    if (!status && Zoltan_Serialize(p->zoltan, n, cuts) != ZOLTAN_OK)
+        status = error_set(e, EXIT_RUN, "Zoltan does not tell how it has cut the domain");
+    if (!status)
+        status = store_array(s, "cuts", STORE_U8, &cuts, &n, 0, e);
+    free(cuts);
+    return status;
+}
+
+int partition_restore(struct partition *p, struct store *s, bool *there, struct error *e)
+{
+    size_t n = 0;
+    char *cuts = NULL;
+    *there = p->which == PARTITION_RCB && store_has(s, "cuts");
+    if (!*there)
+        return 0;
+    int status = store_array(s, "cuts", STORE_U8, &cuts, &n, 0, e);
+    if (!status && Zoltan_Deserialize(p->zoltan, n, cuts) != ZOLTAN_OK)
+        status = store_broken(s, e, "the cuts of the domain");
+    free(cuts);
+    return status;
 }
 
 int partition_owner(const struct partition *p, const double *x)
@@ -170,6 +202,23 @@ int partition_cut(struct partition *p, const double *const *x, const float *weig
     (void)weight;
     (void)n;
     return error_set(e, EXIT_USAGE, "built without Zoltan: one rank only");
+}
+
+int partition_store(const struct partition *p, struct store *s, struct error *e)
+{
+    (void)p;
+    (void)s;
+    (void)e;
+    return 0;
+}
+
+int partition_restore(struct partition *p, struct store *s, bool *there, struct error *e)
+{
+    (void)p;
+    (void)s;
+    (void)e;
+    *there = false;
+    return 0;
 }
 
 int partition_owner(const struct partition *p, const double *x)

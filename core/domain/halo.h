@@ -46,6 +46,11 @@ struct halo_peer {
     size_t out_capacity, in_capacity;
 };
 
+/* Of columns, so far. */
+struct halo_sent {
+    uint64_t messages, bytes;
+};
+
 struct halo {
     struct wire *wire;
     size_t n_array, n_peer, peer_capacity;
@@ -53,6 +58,7 @@ struct halo {
     uint8_t **image; /* [array][ghost]: of all ghosts */
     size_t *n_ghost, *image_capacity;
     struct parcel *parcel; /* [2 * n_peer] */
+    struct halo_sent sent;
 };
 
 int halo_open(struct halo *h, struct wire *w, size_t n_array, struct error *e);

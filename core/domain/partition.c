@@ -1,9 +1,11 @@
-/* domain/partition.c -- see partition.h. Zoltan asks for the points by calls of ours, and keeps its cuts. */
+/* domain/partition.c -- see partition.h. Zoltan asks for the points by calls of ours, and keeps its cuts; slabs
+ * are slab.c's. */
 #include "domain/partition.h"
 #include "config.h"
+#include "domain/slab.h"
 #include <stdlib.h>
 
-const char *const partitioner_name[PARTITIONERS] = {"rcb", "rib", "hsfc"};
+const char *const partitioner_name[PARTITIONERS] = {"rcb", "rib", "hsfc", "slab"};
 
 #if SPH_HAVE_ZOLTAN
 /* Not ours to warn about. */
@@ -14,7 +16,8 @@ const char *const partitioner_name[PARTITIONERS] = {"rcb", "rib", "hsfc"};
 #pragma GCC diagnostic pop
 
 struct partition {
-    struct Zoltan_Struct *zoltan;
+    struct Zoltan_Struct *zoltan; /* NULL: slabs */
+    struct slab slab;
     enum partitioner which;
     int dim;
     /* While it cuts. */
@@ -80,7 +83,7 @@ static void ask_places(void *data, int n_global, int n_local, int n, ZOLTAN_ID_P
 
 static int set(struct partition *p, enum partitioner which)
 {
-    static const char *const method[PARTITIONERS] = {"RCB", "RIB", "HSFC"};
+    static const char *const method[PARTITION_SLAB] = {"RCB", "RIB", "HSFC"};
     const char *const list[][2] = {{"DEBUG_LEVEL", "0"}, /* else it prints */
                                    {"LB_METHOD", method[which]}, {"NUM_GID_ENTRIES", "1"},
                                    {"NUM_LID_ENTRIES", "1"},     {"OBJ_WEIGHT_DIM", "1"},
@@ -108,6 +111,8 @@ int partition_open(struct partition **out, enum partitioner which, int dim, stru
         return error_memory(e, "the domain", sizeof *p);
     p->dim = dim;
     p->which = which;
+    if (which == PARTITION_SLAB)
+        return slab_open(&p->slab, dim, e);
     if (Zoltan_Initialize(0, NULL, &version) == ZOLTAN_OK)
         p->zoltan = Zoltan_Create(MPI_COMM_WORLD);
     return p->zoltan && set(p, which) == 0 ? 0 : error_set(e, EXIT_RUN, "Zoltan does not start");
@@ -117,6 +122,8 @@ void partition_close(struct partition *p)
 {
     if (p && p->zoltan)
         Zoltan_Destroy(&p->zoltan);
+    if (p)
+        slab_close(&p->slab);
     free(p);
 }
 
@@ -129,6 +136,8 @@ int partition_cut(struct partition *p, const double *const *x, const float *weig
     p->x = x;
     p->weight = weight;
     p->n = n;
+    if (!p->zoltan)
+        return slab_cut(&p->slab, x, weight, n, e);
     const int status = Zoltan_LB_Partition(
         p->zoltan, &changes, &n_gid, &n_lid, &n_import, &import_global, &import_local, &import_from,
         &import_part, &n_export, &export_global, &export_local, &export_to, &export_part);
@@ -173,6 +182,8 @@ int partition_owner(const struct partition *p, const double *x)
 {
     double at[3] = {0.0, 0.0, 0.0};
     int rank = 0, part = 0;
+    if (!p->zoltan)
+        return slab_owner(&p->slab, x);
     askew(p->dim, x, at);
     if (Zoltan_LB_Point_PP_Assign(p->zoltan, at, &rank, &part) != ZOLTAN_OK)
         return 0;

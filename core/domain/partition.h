@@ -1,13 +1,14 @@
 /* domain/partition.h -- which rank a place belongs to: Zoltan's recursive bisection by coordinates (RCB) or along
- * axes of inertia (RIB), or its Hilbert curve (HSFC). Knows points and weights, nothing of particles. */
+ * axes of inertia (RIB), its Hilbert curve (HSFC), or slabs of our own. Knows points and weights, nothing of
+ * particles. */
 #ifndef DOMAIN_PARTITION_H
 #define DOMAIN_PARTITION_H
 
 #include "base/store.h"
 #include <stddef.h>
 
-enum partitioner { PARTITION_RCB, PARTITION_RIB, PARTITION_HSFC, PARTITIONERS };
-/* "rcb", "rib", "hsfc". */
+enum partitioner { PARTITION_RCB, PARTITION_RIB, PARTITION_HSFC, PARTITION_SLAB, PARTITIONERS };
+/* "rcb", "rib", "hsfc", "slab". */
 extern const char *const partitioner_name[PARTITIONERS];
 
 struct partition;

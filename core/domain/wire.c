@@ -77,7 +77,8 @@ int wire_open(struct wire **out, struct error *e)
     if (look_around(w) || MPI_Comm_dup(MPI_COMM_WORLD, &w->comm) ||
         MPI_Comm_dup(MPI_COMM_WORLD, &w->alarm) ||
         MPI_Type_contiguous((int)sizeof(struct term), MPI_BYTE, &w->term) ||
-        MPI_Type_commit(&w->term) || MPI_Op_create(merge, 1, &w->merge))
+        MPI_Type_commit(&w->term) || MPI_Op_create(merge, 1, &w->merge) ||
+        MPI_Comm_set_name(w->comm, "sph") || MPI_Comm_set_name(w->alarm, "sph alarm"))
         return failed(e);
     return 0;
 }

@@ -217,6 +217,7 @@ static bool file_has_mark(int folder, const char *name, const char *mark, size_t
 static bool is_rows(const char *name)
 {
     return strcmp(name, "log.csv") == 0 || strcmp(name, "errors.csv") == 0 ||
+           strcmp(name, "ranks.csv") == 0 ||
            ((starts_with(name, "probe_") || starts_with(name, "profile_")) &&
             ends_with(name, ".csv"));
 }

@@ -15,7 +15,7 @@ struct output {
 
 /* Makes the folder (and parents) if need be, claims it (a lock file: two runs never share one) and
  * removes the results of an earlier run there, only if they are ours (snapshot_*.vtkhdf, log.csv,
- * errors.csv, probe_*.csv, profile_*.csv, summary.json, checkpoint_*.h5 and pictures that say that
+ * errors.csv, ranks.csv, probe_*.csv, profile_*.csv, summary.json, checkpoint_*.h5 and pictures that say that
  * they are ours); other files stay. A log.csv, another of these tables or a summary.json that is not
  * ours is an error: the run would overwrite it. Errors: not a folder, not writable, in use (by which
  * process). */

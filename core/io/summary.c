@@ -346,6 +346,8 @@ cJSON *summary_json(const struct summary *s)
     put_cost(&m, root, s);
     if (s->device)
         put(&m, root, "device", cJSON_Duplicate(s->device, 1));
+    if (s->on_ranks)
+        put(&m, root, "ranks", cJSON_Duplicate(s->on_ranks, 1));
     put_plan(&m, root, s);
     put_versions(&m, root);
     put_plugins(&m, root, s);

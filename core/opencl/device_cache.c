@@ -6,10 +6,12 @@
 #include "opencl/device_cache.h"
 
 #include <dirent.h>
+#include <errno.h>
 #include <fcntl.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
@@ -20,6 +22,9 @@
 #define DRAFT_AGE 3600
 #define SUFFIX ".sphcl"
 #define DRAFT "draft-"
+/* So long, and so often, one process waits for another's work [s], [ns]. */
+#define WAIT_MOST 300
+#define WAIT_STEP 20000000
 
 struct head {
     char magic[8];
@@ -266,6 +271,63 @@ void cache_put(const struct cache_key *k, const void *data, size_t bytes)
         put(dir, path, &h, data);
         make_room(dir);
     }
+    free(path);
+    free(dir);
+}
+
+/* -- Turns -------- */
+
+/* The file whose lock says that somebody makes the entry; a draft, as it is nobody's any more one day. */
+static char *turn_of(const char *dir, const struct cache_key *k)
+{
+    return text_format("%s/" DRAFT "%016llx%016llx", dir, (unsigned long long)k->half[1],
+                       (unsigned long long)k->half[0]);
+}
+
+/* False: the other took too long. */
+static bool wait_for(int fd, bool *waited)
+{
+    const struct timespec step = {0, WAIT_STEP};
+    const time_t end = time(NULL) + WAIT_MOST;
+
+    while (flock(fd, LOCK_EX | LOCK_NB)) {
+        if (errno != EWOULDBLOCK || time(NULL) > end)
+            return false;
+        *waited = true;
+        nanosleep(&step, NULL);
+    }
+    return true;
+}
+
+int cache_begin(const struct cache_key *k, bool *waited)
+{
+    char *dir = folder(), *path = NULL;
+    int fd = -1;
+
+    *waited = false;
+    if (dir) {
+        make_folder(dir);
+        path = turn_of(dir, k);
+    }
+    if (path)
+        fd = open(path, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0600);
+    if (fd >= 0 && !wait_for(fd, waited)) {
+        close(fd);
+        fd = -1;
+    }
+    free(path);
+    free(dir);
+    return fd;
+}
+
+void cache_end(const struct cache_key *k, int turn)
+{
+    char *dir = folder(), *path = dir ? turn_of(dir, k) : NULL;
+
+    if (turn >= 0 && path)
+        unlink(path); /* who waits for it finds it free, and looks for the entry first */
+    if (turn >= 0)
+        close(turn);
     free(path);
     free(dir);
 }

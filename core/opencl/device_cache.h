@@ -4,6 +4,7 @@
 #ifndef OPENCL_DEVICE_CACHE_H
 #define OPENCL_DEVICE_CACHE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -18,6 +19,10 @@ void cache_key_text(struct cache_key *k, const char *text);
 
 /* What was put under that key, in fresh memory; NULL: nothing. */
 void *cache_get(const struct cache_key *k, size_t *bytes);
+/* Whoever is about to make what was not there: while another process makes the same this waits, so that it is there
+ * then; not for ever, and not for one that has died. Returns what cache_end wants; *waited: it had to. */
+int cache_begin(const struct cache_key *k, bool *waited);
+void cache_end(const struct cache_key *k, int turn);
 /* Puts it there, all or nothing, and removes what was not asked for the longest where all is too much. */
 void cache_put(const struct cache_key *k, const void *data, size_t bytes);
 

@@ -153,10 +153,18 @@ static int build_or_take(struct device *d, cl_program *out, const char *text, co
     *out = from_cache(d, &key, options);
     if (*out)
         return 0;
-    if (build(d, out, text, options, what, e))
-        return -1;
-    to_cache(&key, *out);
-    return 0;
+    /* Ranks that share a machine want the same at the same time. */
+    bool waited;
+    const int turn = cache_begin(&key, &waited);
+    int status = 0;
+    *out = waited ? from_cache(d, &key, options) : NULL;
+    if (!*out) {
+        status = build(d, out, text, options, what, e);
+        if (!status)
+            to_cache(&key, *out);
+    }
+    cache_end(&key, turn);
+    return status;
 }
 
 const char *device_build_file(const struct device *d)

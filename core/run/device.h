@@ -43,6 +43,7 @@ struct run_device {
     /* On several ranks; device_domain.c. */
     int *taken;             /* [rank]: the number of its device */
     struct ops_sends *send; /* [array] */
+    struct ops_skin *met;   /* as skin: when ghosts were found, of frames but 0 */
     struct device_buffer out, in;
     char *packed; /* on the host: what goes, then what comes */
     size_t packed_bytes;

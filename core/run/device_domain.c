@@ -20,7 +20,8 @@ int run_device_domain_open(struct run *r, struct error *e)
     const size_t ranks = (size_t)wire_size(r->domain->wire);
     d->taken = calloc(ranks, sizeof(*d->taken));
     d->send = calloc(r->plan->n_array + 1, sizeof(*d->send));
-    if (!d->taken || !d->send)
+    d->met = calloc(r->plan->n_array * r->plan->n_frame + 1, sizeof(*d->met));
+    if (!d->taken || !d->send || !d->met)
         return error_memory(e, "the domain", ranks * sizeof(*d->taken));
     return ops_need_halo(d->ops, e) ||
                    wire_gather(r->domain->wire, &mine, sizeof(mine), d->taken, e)
@@ -34,11 +35,14 @@ void run_device_domain_close(struct run *r)
 
     for (size_t a = 0; d->send && d->ops && a < r->plan->n_array; a++)
         ops_sends_release(d->ops, &d->send[a]);
+    for (size_t k = 0; d->met && d->ops && k < r->plan->n_array * r->plan->n_frame; k++)
+        ops_skin_release(d->ops, &d->met[k]);
     if (d->d) {
         device_release(d->d, &d->out);
         device_release(d->d, &d->in);
     }
     free(d->send);
+    free(d->met);
     free(d->taken);
     free(d->packed);
 }

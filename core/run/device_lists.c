@@ -143,7 +143,9 @@ static int look_for_escaped(struct run *r, struct error *e)
 
 /* -- Are the lists still right? -------- */
 
-static int holds(struct run *r, size_t frame, bool *answer, struct error *e)
+/* Whether what was made when the places of a frame were kept is right now. */
+static int holds(struct run *r, const struct ops_skin *kept, size_t frame, bool *answer,
+                 struct error *e)
 {
     struct skin_change all = {0.0, INFINITY};
     const size_t first = r->device->n_slot, most = (OPS_RESULTS - 2 - first) / 2;
@@ -157,7 +159,7 @@ static int holds(struct run *r, size_t frame, bool *answer, struct error *e)
             all.moved = NAN;
             break;
         }
-        if (ops_skin_begin(r->device->ops, &r->device->skin[frame * r->plan->n_array + a],
+        if (ops_skin_begin(r->device->ops, &kept[frame * r->plan->n_array + a],
                            &r->device->arena[a], frame_place(r, frame, a), frame_reach(r, frame, a),
                            frame_support(r->plan), r->skin, first + 2 * n++, e))
             return -1;
@@ -172,13 +174,12 @@ static int holds(struct run *r, size_t frame, bool *answer, struct error *e)
     return 0;
 }
 
-static int keep_places(struct run *r, size_t frame, struct error *e)
+static int keep_places(struct run *r, struct ops_skin *kept, size_t frame, struct error *e)
 {
-    for (size_t a = 0; !r->plan->frame[frame].frozen && a < r->plan->n_array; a++)
+    for (size_t a = 0; a < r->plan->n_array; a++)
         if (frame_has(r, frame, a) &&
-            ops_skin_keep(r->device->ops, &r->device->skin[frame * r->plan->n_array + a],
-                          &r->device->arena[a], frame_place(r, frame, a), frame_reach(r, frame, a),
-                          e))
+            ops_skin_keep(r->device->ops, &kept[frame * r->plan->n_array + a], &r->device->arena[a],
+                          frame_place(r, frame, a), frame_reach(r, frame, a), e))
             return -1;
     return 0;
 }
@@ -343,9 +344,16 @@ static int make_halo(struct run *r, double margin, struct error *e)
 {
     for (size_t a = 0; a < r->plan->n_array; a++)
         for (int c = 0; c < r->plan->dim; c++)
-            if (sides_check_width(&r->plan->scene->box, c, margin, r->plan->array[a].p.name, e))
-                return no_ghosts(r, e);
-    return run_device_halo(r, e) ? no_ghosts(r, e) : 0;
+            if (sides_check_width(&r->plan->scene->box, c, margin, r->plan->array[a].p.name, e)) {
+                struct error why = {0};
+                return places_there(r, &why) ? -1 : watch_too_wide(r, e);
+            }
+    if (run_device_halo(r, e))
+        return no_ghosts(r, e);
+    for (size_t f = 1; f < r->plan->n_frame; f++)
+        if (places_here(r, f, e) || keep_places(r, r->device->met, f, e))
+            return -1;
+    return 0;
 }
 
 /* Whether there may be images beyond a side of an axis. */
@@ -419,7 +427,7 @@ static int make_frame(struct run *r, size_t frame, bool counted, struct error *e
     for (size_t k = 0; k < r->plan->n_list; k++)
         if (r->plan->list[k].frame == frame && make_list(r, k, counted, e))
             return -1;
-    return keep_places(r, frame, e);
+    return r->plan->frame[frame].frozen ? 0 : keep_places(r, r->device->skin, frame, e);
 }
 
 static int freeze(struct run *r, size_t frame, struct error *e)
@@ -442,10 +450,27 @@ static int freeze(struct run *r, size_t frame, struct error *e)
     return 0;
 }
 
-/* Of ghosts that other ranks have. */
-static int others_places(struct run *r, size_t frame, struct error *e)
+static int build(struct run *r, bool within, bool sorts, struct error *e)
 {
-    for (size_t a = 0; run_shared(r) && a < r->plan->n_array; a++)
+    if (look_for_escaped(r, e) || (!within && wrap(r, e)) || (sorts && sort(r, e)) ||
+        make_ghosts(r, e))
+        return -1;
+    /* Ghosts of others stand in another order now. */
+    if (sorts || !r->lists_made || run_shared(r))
+        memset(r->frame_made, false, r->plan->n_frame);
+    return make_frame(r, 0, sorts || !r->lists_made, e);
+}
+
+/* Others' particles that a frame's lists need are among the ghosts, and stand where they do there. */
+static int meet_again(struct run *r, size_t frame, struct error *e)
+{
+    bool right = false;
+
+    if (!run_shared(r))
+        return 0;
+    if (holds(r, r->device->met, frame, &right, e) || (!right && build(r, true, false, e)))
+        return -1;
+    for (size_t a = 0; a < r->plan->n_array; a++)
         if (frame_has(r, frame, a) && (run_device_refresh(r, a, frame_place(r, frame, a), e) ||
                                        run_device_refresh(r, a, frame_reach(r, frame, a), e)))
             return -1;
@@ -460,11 +485,11 @@ static int frame_lists(struct run *r, size_t frame, struct error *e)
 
     if (places_here(r, frame, e))
         return -1;
-    if (r->frame_made[frame] && !frozen && holds(r, frame, &right, e))
+    if (r->frame_made[frame] && !frozen && holds(r, r->device->skin, frame, &right, e))
         return -1;
     if (r->frame_made[frame] && (frozen || right))
         return 0;
-    if ((frozen && !r->frozen[frame] && freeze(r, frame, e)) || others_places(r, frame, e))
+    if ((frozen && !r->frozen[frame] && freeze(r, frame, e)) || meet_again(r, frame, e))
         return -1;
     status = make_frame(r, frame, true, e);
     r->frame_made[frame] = !status;
@@ -482,16 +507,13 @@ int run_device_frame(struct run *r, size_t frame, struct error *e)
     return status;
 }
 
-static int build(struct run *r, bool within, struct error *e)
+static int renew(struct run *r, bool within, bool sorts, struct error *e)
 {
-    const bool sorts = !within && (!r->lists_made || ++r->builds_since_sort >= BUILDS_PER_SORT);
+    const int status = build(r, within, sorts, e);
 
-    if (look_for_escaped(r, e) || (!within && wrap(r, e)) || (sorts && sort(r, e)) ||
-        make_ghosts(r, e))
-        return -1;
-    if (sorts || !r->lists_made)
-        memset(r->frame_made, false, r->plan->n_frame);
-    return make_frame(r, 0, sorts || !r->lists_made, e);
+    r->lists_made = !status;
+    r->cost.list_builds++;
+    return status;
 }
 
 static int lists(struct run *r, bool within, struct error *e)
@@ -502,11 +524,16 @@ static int lists(struct run *r, bool within, struct error *e)
     if (!status && r->plan->n_list == 0)
         return within ? 0 : wrap(r, e);
     if (!status && r->lists_made)
-        status = holds(r, 0, &right, e);
+        status = holds(r, r->device->skin, 0, &right, e);
     if (!status && !right) {
-        status = build(r, within, e);
-        r->lists_made = !status;
-        r->cost.list_builds++;
+        const bool first = !within && !r->lists_made && r->cost.list_builds == 0;
+        const bool sorts = !within && (!r->lists_made || ++r->builds_since_sort >= BUILDS_PER_SORT);
+        bool uneven = false;
+        status = renew(r, within, sorts, e);
+        if (!status && first)
+            status = run_domain_uneven(r, &uneven, e);
+        if (!status && uneven)
+            status = renew(r, within, sorts, e);
     }
     r->lists_suspect = false;
     return status;

@@ -209,22 +209,28 @@ static int room_for(struct run_domain *d, size_t n, struct error *e)
     return d->capacity ? 0 : error_memory(e, "the domain", capacity * sizeof *d->place);
 }
 
-/* Every particle's weight, and how even the shares are. */
-static int weigh_all(struct run *r, struct error *e)
+int run_domain_cost(struct run *r, double *cost, struct error *e)
 {
     struct run_domain *d = r->domain;
     const struct plan *plan = r->plan;
     size_t n = 0, at = 0;
-    double sum = 0.0;
     for (size_t a = 0; a < plan->n_array; a++)
         n += plan->array[a].p.n;
     if (room_for(d, n, e))
         return -1;
+    *cost = 0.0;
     for (size_t a = 0; a < plan->n_array; a++) {
-        sum += weigh(r, a, d->weight + at);
+        *cost += weigh(r, a, d->weight + at);
         at += plan->array[a].p.n;
     }
-    return find_imbalance(r, sum, e);
+    return 0;
+}
+
+/* Every particle's weight, and how even the shares are. */
+static int weigh_all(struct run *r, struct error *e)
+{
+    double sum;
+    return run_domain_cost(r, &sum, e) || find_imbalance(r, sum, e) ? -1 : 0;
 }
 
 int run_domain_uneven(struct run *r, bool *uneven, struct error *e)
@@ -260,11 +266,21 @@ static int balance(struct run *r, struct error *e)
     return partition_cut(d->partition, (const double *const *)place, d->weight, at, e);
 }
 
+/* Adds what was sent since then. */
+static void add_sent(const struct run_domain *d, struct halo_sent *to,
+                     const struct wire_count *since)
+{
+    const struct wire_count now = wire_count(d->wire);
+    to->messages += now.messages - since->messages;
+    to->bytes += now.bytes - since->bytes;
+}
+
 int run_domain_move(struct run *r, struct error *e)
 {
     struct run_domain *d = r->domain;
     if (!d)
         return 0;
+    const struct wire_count before = wire_count(d->wire);
     if (balance(r, e))
         return -1;
     for (size_t a = 0; a < r->plan->n_array; a++) {
@@ -281,6 +297,7 @@ int run_domain_move(struct run *r, struct error *e)
             return -1;
         d->moved += sent;
     }
+    add_sent(d, &d->for_moves, &before);
     return 0;
 }
 
@@ -301,7 +318,9 @@ int run_domain_meet(struct run *r, struct error *e)
                                  .cloud = d->cloud,
                                  .want = d->want,
                                  .n_want = d->n_want,
-                                 .factor = 1.0 + r->skin};
+                                 /* Lists of other frames are made later: there is room to move. */
+                                 .factor = 1.0 + (plan->n_frame > 1 ? 2.0 : 1.0) * r->skin};
+    d->halos++;
     return halo_make(&d->halo, &job, r->ghosts, e);
 }
 
@@ -310,6 +329,7 @@ int run_domain_ghosts(struct run *r, struct error *e)
     struct run_domain *d = r->domain;
     const struct plan *plan = r->plan;
     const size_t n = plan->n_array;
+    const struct wire_count before = wire_count(d->wire);
     if (run_domain_meet(r, e))
         return -1;
     for (size_t a = 0; a < n; a++) {
@@ -323,7 +343,10 @@ int run_domain_ghosts(struct run *r, struct error *e)
                 return -1;
         }
     }
-    return run_domain_begin(r, e) || run_domain_finish(r, e) ? -1 : 0;
+    if (run_domain_begin(r, e) || run_domain_finish(r, e))
+        return -1;
+    add_sent(d, &d->for_ghosts, &before);
+    return 0;
 }
 
 int run_domain_ask(struct run *r, size_t array, int column, struct error *e)

@@ -402,8 +402,6 @@ static int renew(struct run *r, bool within, bool sort, struct error *e)
     if (!status)
         status = make_lists(r, sort, e);
     forget_h(r);
-    if (!status)
-        status = narrow_places(r, e);
     r->lists_made = !status;
     r->cost.list_builds++;
     return status;
@@ -428,6 +426,9 @@ int run_lists(struct run *r, bool within, struct error *e)
             status = run_domain_uneven(r, &uneven, e);
         if (!status && uneven)
             status = renew(r, within, sort, e);
+        if (!status)
+            status = narrow_places(r, e); /* once: it rounds */
+        r->lists_made = !status;
     }
     r->lists_suspect = false;
     r->cost.neighbour += omp_get_wtime() - begin;

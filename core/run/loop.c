@@ -114,6 +114,7 @@ static int one_step(struct loop *l, struct error *e)
     if (choose_dt(l, &dt, e))
         return -1;
     r->dt = dt;
+    loop_ranks_step_begins(&l->ranks);
     double goal = target(l);
     bool reaches = !(r->time + dt < goal);
     r->look = is_logged(l, r->step + 1, r->time + dt);
@@ -123,6 +124,7 @@ static int one_step(struct loop *l, struct error *e)
     if (reaches)
         r->time = goal; /* not a rounding beside it */
     r->step++;
+    loop_ranks_step_ends(&l->ranks);
     r->cost.particle_updates += particles_total(r->plan);
     return 0;
 }
@@ -143,7 +145,8 @@ static int after_step(struct loop *l, struct error *e)
     if (!isfinite(totals_energy(&l->last)))
         return watch_fail(r, &(struct sign){.cause = WATCH_NOT_FINITE}, e,
                           "the energy is no longer a number");
-    if (logged && (watch_energy(r, &l->first, &l->last, e) || loop_log(l, e)))
+    if (logged &&
+        (watch_energy(r, &l->first, &l->last, e) || loop_log(l, e) || loop_ranks_row(&l->ranks, e)))
         return -1;
     if (!last && measures_due(&l->measures) &&
         (run_look(r, e) || measures_take(&l->measures, MEASURES_ON_THE_WAY, e)))
@@ -174,7 +177,8 @@ static int start(struct loop *l, struct error *e)
     l->ended = finished(l);
     if (run_fetch(r, e))
         return -1;
-    return loop_log(l, e) || loop_snapshot(l, e) || measures_take(&l->measures, MEASURES_START, e)
+    return loop_log(l, e) || loop_ranks_row(&l->ranks, e) || loop_snapshot(l, e) ||
+                   measures_take(&l->measures, MEASURES_START, e)
                ? -1
                : 0;
 }
@@ -182,6 +186,13 @@ static int start(struct loop *l, struct error *e)
 double loop_seconds(const struct loop *l)
 {
     return omp_get_wtime() - l->loop_begun - (l->run.cost.io - l->loop_io);
+}
+
+/* What all ranks have to tell. */
+static int gather(struct loop *l, struct error *e)
+{
+    const struct summary_memory held = loop_memory(l);
+    return loop_ranks_gather(&l->ranks, &held, e);
 }
 
 /* A checkpoint was taken before its step was looked at. */
@@ -209,7 +220,7 @@ static int steps(struct loop *l, struct error *e)
     if (measures_take(&l->measures, MEASURES_END, e))
         return -1;
     r->cost.loop = loop_seconds(l);
-    return loop_snapshot(l, e);
+    return loop_snapshot(l, e) || gather(l, e) ? -1 : 0;
 }
 
 static int loop_begin(struct loop *l, struct plan *plan, struct error *e)
@@ -241,6 +252,8 @@ static int loop_begin(struct loop *l, struct plan *plan, struct error *e)
     free(path);
     if (!status)
         status = measures_open(&l->measures, &l->run, l->out, l->options->resume != NULL, e);
+    if (!status)
+        status = loop_ranks_open(&l->ranks, &l->run, l->out, l->options->resume != NULL, e);
     return status;
 }
 
@@ -277,6 +290,8 @@ static bool can_keep(struct loop *l)
 static void keep_failed(struct loop *l, const struct error *e)
 {
     struct error ignored = {0};
+    run_domain_agree(&l->run, watch_share_failure(&l->run, &ignored), &ignored);
+    ignored = (struct error){0};
     if (l->apart) {
         /* The columns here are of different times. */
     } else if (l->run.step > 0 || (l->run.watch && l->run.watch->failure.happened)) {
@@ -285,6 +300,8 @@ static void keep_failed(struct loop *l, const struct error *e)
         run_domain_agree(&l->run, loop_checkpoint_failed(l, e->text, &ignored), &ignored);
     }
     ignored = (struct error){0};
+    run_domain_agree(&l->run, gather(l, &ignored), &ignored);
+    ignored = (struct error){0};
     if (run_speaks(&l->run))
         loop_summarise(l, "failed", e->text, &ignored);
 }
@@ -292,7 +309,7 @@ static void keep_failed(struct loop *l, const struct error *e)
 /* What is told at the end. */
 static int tell(struct loop *l, struct error *e)
 {
-    if (log_close(&l->log, e) || measures_close(&l->measures, e))
+    if (log_close(&l->log, e) || measures_close(&l->measures, e) || loop_ranks_close(&l->ranks, e))
         return -1;
     if (!run_speaks(&l->run))
         return 0;
@@ -310,18 +327,22 @@ int loop_run(struct plan *plan, const struct output *out, const struct loop_opti
     int status = loop_begin(&l, plan, e);
     if (!status)
         status = steps(&l, e);
+    if (status && l.run.domain && !l.refused)
+        tell_device(&l, e);
     status = run_domain_agree(&l.run, status, e);
     progress_end(&l.progress);
     if (!status)
         status = run_domain_agree(&l.run, tell(&l, e), e);
     if (status && l.run.plan && can_keep(&l)) {
-        tell_device(&l, e);
+        if (!l.run.domain) /* else its rank has said it */
+            tell_device(&l, e);
         keep_failed(&l, e);
     }
     struct error ignored = {0};
     log_close(&l.log, &ignored);
     measures_close(&l.measures, &ignored);
     measures_free(&l.measures);
+    loop_ranks_free(&l.ranks);
     run_free(&l.run);
     free(l.picture);
     cJSON_free(l.scene_text);

@@ -162,15 +162,16 @@ int loop_checkpoint(struct loop *l, struct error *e)
     char *temporary;
     /* Rows before this step are not written again. */
     if (run_fetch(&l->run, e) || csv_sync(&l->log.csv, e) || measures_sync(&l->measures, e) ||
-        shared_file_begin(&l->run, l->out, name, &temporary, e))
+        loop_ranks_sync(&l->ranks, e) || shared_file_begin(&l->run, l->out, name, &temporary, e))
         return -1;
     int status = write_file(l, temporary, NULL, e);
     status = shared_file_end(&l->run, l->out, temporary, name, status, e);
     if (!status) {
         l->checkpointed = l->run.step;
-        if (run_speaks(&l->run))
+        if (run_speaks(&l->run)) {
             checkpoint_prune(l->out, l->scene->output.checkpoint.keep);
-        earlier_pass(&l->earlier, l->out, l->run.step);
+            earlier_pass(&l->earlier, l->out, l->run.step);
+        }
     }
     l->run.cost.io += omp_get_wtime() - begin;
     return status;

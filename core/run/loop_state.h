@@ -4,8 +4,10 @@
 #define RUN_LOOP_STATE_H
 
 #include "io/log.h"
+#include "io/summary.h"
 #include "run/earlier.h"
 #include "run/loop.h"
+#include "run/loop_ranks.h"
 #include "run/measures.h"
 
 /* A run of the loop. */
@@ -16,6 +18,7 @@ struct loop {
     const struct scene *scene;
     struct log log;
     struct measures measures;
+    struct loop_ranks ranks;
     struct progress progress;
     struct earlier earlier; /* of this folder */
     struct totals first, last;
@@ -68,7 +71,9 @@ int loop_checkpoint_if_due(struct loop *l, struct error *e);
  * the output folder holds of later. */
 int loop_resume(struct loop *l, struct error *e);
 
-/* loop_report.c. The picture of the last snapshot, if the scene wants one. */
+/* loop_report.c. Bytes that this rank holds, item by item. */
+struct summary_memory loop_memory(const struct loop *l);
+/* The picture of the last snapshot, if the scene wants one. */
 int loop_draw(struct loop *l, struct error *e);
 /* summary.json, and the table. reason: of a failure, or NULL. */
 int loop_summarise(struct loop *l, const char *status, const char *reason, struct error *e);

@@ -161,6 +161,66 @@ static void test_room(void **state)
     free(before);
 }
 
+/* -- Several processes at once -------- */
+
+/* Takes the turn, says so, and after a while puts an entry, or dies. */
+static pid_t other(const struct cache_key *k, bool dies)
+{
+    int pipes[2];
+    char word = 0;
+    assert_int_equal(pipe(pipes), 0);
+    const pid_t child = fork();
+    if (child == 0) {
+        bool waited;
+        const int turn = cache_begin(k, &waited);
+        const ssize_t n = write(pipes[1], "1", 1);
+        usleep(300000);
+        if (dies || n != 1 || turn < 0)
+            _exit(1);
+        cache_put(k, "entry", 6);
+        cache_end(k, turn);
+        _exit(0);
+    }
+    assert_true(child > 0);
+    assert_int_equal(read(pipes[0], &word, 1), 1);
+    close(pipes[0]);
+    close(pipes[1]);
+    return child;
+}
+
+static void test_turns(void **state)
+{
+    const struct cache_key k = {{5, 9}};
+    char *before = getenv("SPH_CACHE_DIR"), name[4][300], *data;
+    const char *dir = scratch_path(state, "turns");
+    bool waited;
+    size_t n;
+
+    before = before ? strdup(before) : NULL;
+    setenv("SPH_CACHE_DIR", dir, 1);
+    for (int dies = 1; dies >= 0; dies--) {
+        const pid_t child = other(&k, dies);
+        const int turn = cache_begin(&k, &waited);
+        assert_true(turn >= 0 && waited);
+        data = cache_get(&k, &n);
+        assert_true(dies ? data == NULL : data && n == 6);
+        free(data);
+        cache_end(&k, turn);
+        int status;
+        assert_int_equal(waitpid(child, &status, 0), child);
+    }
+    const int turn = cache_begin(&k, &waited);
+    assert_true(turn >= 0 && !waited);
+    cache_end(&k, turn);
+    assert_int_equal(files_in(dir, name, 4), 1);
+    setenv("SPH_CACHE_DIR", "", 1);
+    assert_int_equal(cache_begin(&k, &waited), -1);
+    cache_end(&k, -1);
+    if (before)
+        setenv("SPH_CACHE_DIR", before, 1);
+    free(before);
+}
+
 /* -- A second process -------- */
 
 static double now(void)
@@ -255,6 +315,7 @@ int main(int argc, char **argv)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_entries, scratch_setup, scratch_teardown),
         cmocka_unit_test_setup_teardown(test_room, scratch_setup, scratch_teardown),
+        cmocka_unit_test_setup_teardown(test_turns, scratch_setup, scratch_teardown),
         cmocka_unit_test_setup_teardown(test_second_process, scratch_setup, scratch_teardown),
     };
     struct device *d;

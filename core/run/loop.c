@@ -273,13 +273,16 @@ static void tell_device(const struct loop *l, struct error *e)
 /* Whether all ranks have begun; and whether they stand at the same step, so that their particles make a state. */
 static bool can_keep(struct loop *l)
 {
-    static const uint32_t op[3] = {SPH_REDUCE_MAX, SPH_REDUCE_MAX, SPH_REDUCE_MIN};
+    static const uint32_t op[4] = {SPH_REDUCE_MAX, SPH_REDUCE_MAX, SPH_REDUCE_MAX, SPH_REDUCE_MIN};
     const double step = (double)l->run.step;
-    double value[3] = {l->refused ? 1.0 : 0.0, step, step};
+    bool lost;
+    run_device_failed(&l->run, &lost);
+    double value[4] = {l->refused ? 1.0 : 0.0, lost ? 1.0 : 0.0, step, step};
     struct error ignored = {0};
-    if (run_share_numbers(&l->run, value, op, 3, &ignored) || value[0] > 0.0)
+    if (run_domain_agree(&l->run, run_share_numbers(&l->run, value, op, 4, &ignored), &ignored) ||
+        value[0] > 0.0)
         return false;
-    l->apart = value[1] > value[2];
+    l->apart = value[1] > 0.0 || value[2] > value[3];
     return true;
 }
 
@@ -287,10 +290,9 @@ static bool can_keep(struct loop *l)
 static void keep_failed(struct loop *l, const struct error *e)
 {
     struct error ignored = {0};
-    bool lost;
-    run_device_failed(&l->run, &lost);
-    watch_share_failure(&l->run, &ignored);
-    if (lost || l->apart) {
+    run_domain_agree(&l->run, watch_share_failure(&l->run, &ignored), &ignored);
+    ignored = (struct error){0};
+    if (l->apart) {
         /* The columns here are of different times. */
     } else if (l->run.step > 0 || (l->run.watch && l->run.watch->failure.happened)) {
         run_domain_agree(&l->run, loop_snapshot(l, &ignored), &ignored);
@@ -332,7 +334,8 @@ int loop_run(struct plan *plan, const struct output *out, const struct loop_opti
     if (!status)
         status = run_domain_agree(&l.run, tell(&l, e), e);
     if (status && l.run.plan && can_keep(&l)) {
-        tell_device(&l, e);
+        if (!l.run.domain) /* else its rank has said it */
+            tell_device(&l, e);
         keep_failed(&l, e);
     }
     struct error ignored = {0};

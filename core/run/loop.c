@@ -270,6 +270,16 @@ static void tell_device(const struct loop *l, struct error *e)
                   e->text, (unsigned long long)l->checkpointed);
 }
 
+/* Of several ranks any may fail by itself: what may be gone on from. A run that has gone wrong would do so again. */
+static void tell_checkpoint(const struct loop *l, struct error *e)
+{
+    if (l->run.domain && e->text[0] && l->checkpointed != UINT64_MAX &&
+        !(l->run.watch && l->run.watch->failure.happened) && !strstr(e->text, "--resume"))
+        error_set(e, (enum exit_code)e->exit_code,
+                  "%s; the last checkpoint is of step %llu: --resume latest goes on from there",
+                  e->text, (unsigned long long)l->checkpointed);
+}
+
 /* Whether all ranks have begun; and whether they stand at the same step, so that their particles make a state. */
 static bool can_keep(struct loop *l)
 {
@@ -287,11 +297,12 @@ static bool can_keep(struct loop *l)
 }
 
 /* Keeps the state in which the run failed; its own failures are not worth a second sentence. */
-static void keep_failed(struct loop *l, const struct error *e)
+static void keep_failed(struct loop *l, struct error *e)
 {
     struct error ignored = {0};
     run_domain_agree(&l->run, watch_share_failure(&l->run, &ignored), &ignored);
     ignored = (struct error){0};
+    tell_checkpoint(l, e);
     if (l->apart) {
         /* The columns here are of different times. */
     } else if (l->run.step > 0 || (l->run.watch && l->run.watch->failure.happened)) {

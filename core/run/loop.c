@@ -280,19 +280,23 @@ static void tell_checkpoint(const struct loop *l, struct error *e)
                   e->text, (unsigned long long)l->checkpointed);
 }
 
-/* Whether all ranks have begun; and whether they stand at the same step, so that their particles make a state. */
+/* Whether all ranks have begun; whether they stand at the same step, with their particles in hand, so that those make
+ * a state; and whether one is worth keeping. */
 static bool can_keep(struct loop *l)
 {
-    static const uint32_t op[4] = {SPH_REDUCE_MAX, SPH_REDUCE_MAX, SPH_REDUCE_MAX, SPH_REDUCE_MIN};
+    static const uint32_t op[5] = {SPH_REDUCE_MAX, SPH_REDUCE_MAX, SPH_REDUCE_MIN, SPH_REDUCE_MAX,
+                                   SPH_REDUCE_MAX};
     const double step = (double)l->run.step;
+    const bool happened = l->run.watch && l->run.watch->failure.happened;
     bool lost;
     run_device_failed(&l->run, &lost);
-    double value[4] = {l->refused ? 1.0 : 0.0, lost ? 1.0 : 0.0, step, step};
+    double value[5] = {l->refused ? 1.0 : 0.0, step, step, lost ? 1.0 : 0.0, happened ? 1.0 : 0.0};
     struct error ignored = {0};
-    if (run_domain_agree(&l->run, run_share_numbers(&l->run, value, op, 4, &ignored), &ignored) ||
+    if (run_domain_agree(&l->run, run_share_numbers(&l->run, value, op, 5, &ignored), &ignored) ||
         value[0] > 0.0)
         return false;
-    l->apart = value[1] > 0.0 || value[2] > value[3];
+    l->apart = value[1] > value[2] || value[3] > 0.0;
+    l->worth = value[1] > 0.0 || value[4] > 0.0;
     return true;
 }
 
@@ -305,7 +309,7 @@ static void keep_failed(struct loop *l, struct error *e)
     tell_checkpoint(l, e);
     if (l->apart) {
         /* The columns here are of different times. */
-    } else if (l->run.step > 0 || (l->run.watch && l->run.watch->failure.happened)) {
+    } else if (l->worth) {
         run_domain_agree(&l->run, loop_snapshot(l, &ignored), &ignored);
         ignored = (struct error){0};
         run_domain_agree(&l->run, loop_checkpoint_failed(l, e->text, &ignored), &ignored);

@@ -34,7 +34,8 @@ struct cloud {
     const double *x[3];
     const double *h; /* smoothing length; reach = scale * h */
     double scale;
-    const struct visits *visits; /* NULL: lists visit sources as suits them; else in this order (visit.h) */
+    const struct visits
+        *visits; /* NULL: lists visit sources as suits them; else in this order (visit.h) */
 };
 
 /* Destinations with more neighbours than somebody foresees. */

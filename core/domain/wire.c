@@ -1,5 +1,5 @@
-/* domain/wire.c -- see wire.h; wire_none.c has it without MPI. Every call is begun without waiting, and then waited for in one place, which looks
- * for the alarm as well. */
+/* domain/wire.c -- see wire.h; wire_none.c has it without MPI. Every call is begun without waiting, and then waited
+ * for in one place, which looks for the alarm as well. */
 #include "domain/wire.h"
 #include "config.h"
 #include "domain/ranks.h"

@@ -41,6 +41,13 @@ int store_block(struct store *s, const char *name, enum store_type type, void *d
     return s->block(s, full(s, name, path), type, data, n, e);
 }
 
+int store_piece(struct store *s, const char *name, enum store_type type, void *data, size_t first,
+                size_t n, struct error *e)
+{
+    char path[PATH];
+    return s->piece(s, full(s, name, path), type, data, first, n, e);
+}
+
 bool store_has(struct store *s, const char *name)
 {
     char path[PATH];

@@ -29,6 +29,9 @@ struct store {
     size_t (*count)(struct store *s, const char *path);
     const char *shown; /* the file, for messages */
     char group[192];   /* what names are put behind: "array0/column3/" */
+    /* Reads n elements from `first` on. */
+    int (*piece)(struct store *s, const char *path, enum store_type type, void *data, size_t first,
+                 size_t n, struct error *e);
 };
 
 /* Bytes of an element. */
@@ -41,6 +44,9 @@ void store_leave(struct store *s);
 /* n elements in place. */
 int store_block(struct store *s, const char *name, enum store_type type, void *data, size_t n,
                 struct error *e);
+/* Reading: n elements from `first` on, of a block that may have more. */
+int store_piece(struct store *s, const char *name, enum store_type type, void *data, size_t first,
+                size_t n, struct error *e);
 /* *n elements in memory of their own, which `*data` (a pointer to a pointer) shows. Reading frees what was
  * there and makes room for *n + spare. */
 int store_array(struct store *s, const char *name, enum store_type type, void *data, size_t *n,

@@ -118,7 +118,7 @@ static int run_command(size_t command, int word, int argc, char **argv)
     argv[0] = (char *)commands[command].title;
     int rank, size;
     ranks_launched(&rank, &size);
-    if (rank > 0 && commands[command].run != cli_run)
+    if (rank > 0 && commands[command].run != cli_run && commands[command].run != cli_plan)
         return EXIT_DONE;
     if (size > 1 && commands[command].run == cli_chart)
         return refuse_ranks(size);

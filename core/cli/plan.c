@@ -1,6 +1,9 @@
 /* cli/plan.c -- `sph plan SCENE`: what would be modelled, and its cost. */
+#include "base/quiet.h"
 #include "cli/cli.h"
+#include "cli/plan_ranks.h"
 #include "cli/scene_options.h"
+#include "domain/ranks.h"
 #include "opencl/stages_tell.h"
 #include <string.h>
 
@@ -41,18 +44,28 @@ static error_t parse(int key, char *arg, struct argp_state *state)
     }
 }
 
-static int print_json(const struct plan *plan, struct error *e)
+/* ranks: NULL on one. */
+static int print_json(const struct plan *plan, const struct plan_ranks *ranks, struct error *e)
 {
     cJSON *json = plan_json(plan);
     int status = json ? 0 : error_memory(e, "the plan", 1);
     if (!status && plan->on_device)
         status = stages_json(plan, json, e);
+    if (!status && ranks)
+        cJSON_AddItemToObject(json, "ranks", plan_ranks_json(ranks, plan));
     char *text = status ? NULL : cJSON_Print(json);
     if (text)
         puts(text);
     cJSON_free(text);
     cJSON_Delete(json);
     return status;
+}
+
+static bool is_first(void)
+{
+    int rank, ranks;
+    ranks_count(&rank, &ranks);
+    return rank == 0;
 }
 
 /* On a device also its stages. */
@@ -67,9 +80,38 @@ static int print(struct plan *plan, const struct arguments *a, struct error *e)
     if (a->kernels)
         return stages_print_kernels(plan, !a->gpu, stdout, e);
     if (a->json)
-        return print_json(plan, e);
+        return print_json(plan, NULL, e);
     plan_print(plan, stdout);
     return plan->on_device ? stages_print(plan, stdout, e) : 0;
+}
+
+/* What the ranks share: told by the first. */
+static int plan_of_ranks(struct plan *plan, struct arguments *a, struct error *e)
+{
+    struct plan_ranks r;
+    int status = plan_ranks_make(&r, &a->scene, plan->scene->ranks.partition, e);
+    if (!status && a->json && is_first())
+        status = print_json(plan, &r, e);
+    else if (!status && is_first()) {
+        plan_print(plan, stdout);
+        plan_ranks_print(&r, plan, stdout);
+    }
+    plan_ranks_free(&r);
+    return ranks_agree(status, e);
+}
+
+static int plan_scene(struct arguments *a, struct error *e)
+{
+    struct loaded l;
+    int rank, ranks;
+    ranks_count(&rank, &ranks);
+    int status = loaded_make(&l, &a->scene, false, e);
+    if (!status && ranks > 1 && !a->kernels)
+        status = plan_of_ranks(&l.plan, a, e);
+    else if (!status)
+        status = ranks_agree(is_first() ? print(&l.plan, a, e) : 0, e);
+    loaded_free(&l);
+    return status;
 }
 
 int cli_plan(int argc, char **argv)
@@ -81,15 +123,22 @@ int cli_plan(int argc, char **argv)
         .args_doc = "SCENE.json",
         .doc =
             "Shows what a scene would model: arrays, bytes per particle, passes with what they read "
-            "and write, exchanges, expected pairs. Nothing is run."};
+            "and write, exchanges, expected pairs. Nothing is run. Under mpirun also how its ranks would share the "
+            "domain, and what they would send."};
     struct arguments a = {0};
-    struct loaded l;
     struct error e = {0};
-    argp_err_exit_status = EXIT_USAGE;
+    int rank, size, kept[2] = {-1, -1};
+    ranks_launched(&rank, &size);
+    /* As of a run: what is wrong with the words the first says. */
+    argp_err_exit_status = rank > 0 ? EXIT_DONE : EXIT_USAGE;
+    if (rank > 0)
+        quiet_begin(kept);
     argp_parse(&argp, argc, argv, 0, NULL, &a);
-    int status = loaded_make(&l, &a.scene, false, &e);
+    quiet_end(kept);
+    int status = ranks_begin(&argc, &argv, &e);
     if (!status)
-        status = print(&l.plan, &a, &e);
-    loaded_free(&l);
-    return status ? cli_error(&e) : EXIT_DONE;
+        status = plan_scene(&a, &e);
+    const int code = status ? cli_error(&e) : EXIT_DONE;
+    ranks_end();
+    return code;
 }

@@ -241,7 +241,7 @@ static int run_from(struct arguments *a, struct error *e)
     if (!a->resume) {
         status = run_or_show(a, folder, NULL, e);
     } else {
-        status = ranks_agree(resume_open(&resume, a->resume, folder, e), e);
+        status = resume_open_together(&resume, a->resume, folder, e);
         if (!status && !a->scene.path) {
             a->scene.path = resume.origin.scene_path;
             a->scene.text = resume.origin.scene;

@@ -46,6 +46,11 @@ struct halo_peer {
     size_t out_capacity, in_capacity;
 };
 
+/* Of columns, so far. */
+struct halo_sent {
+    uint64_t messages, bytes;
+};
+
 struct halo {
     struct wire *wire;
     size_t n_array, n_peer, peer_capacity;
@@ -53,6 +58,7 @@ struct halo {
     uint8_t **image; /* [array][ghost]: of all ghosts */
     size_t *n_ghost, *image_capacity;
     struct parcel *parcel; /* [2 * n_peer] */
+    struct halo_sent sent;
 };
 
 int halo_open(struct halo *h, struct wire *w, size_t n_array, struct error *e);
@@ -67,6 +73,13 @@ struct halo_column {
     size_t array;
     int column;
 };
+/* What was sent since then was columns. */
+static inline void halo_count(struct halo *h, const struct wire_count *before)
+{
+    const struct wire_count now = wire_count(h->wire);
+    h->sent.messages += now.messages - before->messages;
+    h->sent.bytes += now.bytes - before->bytes;
+}
 /* Bytes that an exchange of these sends. */
 size_t halo_bytes(const struct halo *h, const struct halo_column *c, size_t n);
 /* All of them in one message to each rank. Between the two, neither the columns nor the halo may change. */

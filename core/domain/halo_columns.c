@@ -110,7 +110,10 @@ int halo_begin(struct halo *h, const struct box *box, const struct halo_column *
         h->parcel[k] = (struct parcel){q->rank, q->out, out};
         receive[k] = (struct parcel){q->rank, q->in, in};
     }
-    return wire_begin(h->wire, h->parcel, h->n_peer, receive, h->n_peer, e);
+    const struct wire_count before = wire_count(h->wire);
+    const int status = wire_begin(h->wire, h->parcel, h->n_peer, receive, h->n_peer, e);
+    halo_count(h, &before);
+    return status;
 }
 
 int halo_finish(struct halo *h, const struct halo_column *c, size_t n, struct error *e)

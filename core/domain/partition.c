@@ -1,9 +1,11 @@
-/* domain/partition.c -- see partition.h. Zoltan asks for the points by calls of ours, and keeps its cuts. */
+/* domain/partition.c -- see partition.h. Zoltan asks for the points by calls of ours, and keeps its cuts; slabs
+ * are slab.c's. */
 #include "domain/partition.h"
 #include "config.h"
+#include "domain/slab.h"
 #include <stdlib.h>
 
-const char *const partitioner_name[PARTITIONERS] = {"rcb", "rib", "hsfc"};
+const char *const partitioner_name[PARTITIONERS] = {"rcb", "rib", "hsfc", "slab"};
 
 #if SPH_HAVE_ZOLTAN
 /* Not ours to warn about. */
@@ -14,7 +16,9 @@ const char *const partitioner_name[PARTITIONERS] = {"rcb", "rib", "hsfc"};
 #pragma GCC diagnostic pop
 
 struct partition {
-    struct Zoltan_Struct *zoltan;
+    struct Zoltan_Struct *zoltan; /* NULL: slabs */
+    struct slab slab;
+    enum partitioner which;
     int dim;
     /* While it cuts. */
     const double *const *x;
@@ -79,7 +83,7 @@ static void ask_places(void *data, int n_global, int n_local, int n, ZOLTAN_ID_P
 
 static int set(struct partition *p, enum partitioner which)
 {
-    static const char *const method[PARTITIONERS] = {"RCB", "RIB", "HSFC"};
+    static const char *const method[PARTITION_SLAB] = {"RCB", "RIB", "HSFC"};
     const char *const list[][2] = {{"DEBUG_LEVEL", "0"}, /* else it prints */
                                    {"LB_METHOD", method[which]}, {"NUM_GID_ENTRIES", "1"},
                                    {"NUM_LID_ENTRIES", "1"},     {"OBJ_WEIGHT_DIM", "1"},
@@ -106,6 +110,9 @@ int partition_open(struct partition **out, enum partitioner which, int dim, stru
     if (!p)
         return error_memory(e, "the domain", sizeof *p);
     p->dim = dim;
+    p->which = which;
+    if (which == PARTITION_SLAB)
+        return slab_open(&p->slab, dim, e);
     if (Zoltan_Initialize(0, NULL, &version) == ZOLTAN_OK)
         p->zoltan = Zoltan_Create(MPI_COMM_WORLD);
     return p->zoltan && set(p, which) == 0 ? 0 : error_set(e, EXIT_RUN, "Zoltan does not start");
@@ -115,6 +122,8 @@ void partition_close(struct partition *p)
 {
     if (p && p->zoltan)
         Zoltan_Destroy(&p->zoltan);
+    if (p)
+        slab_close(&p->slab);
     free(p);
 }
 
@@ -127,6 +136,8 @@ int partition_cut(struct partition *p, const double *const *x, const float *weig
     p->x = x;
     p->weight = weight;
     p->n = n;
+    if (!p->zoltan)
+        return slab_cut(&p->slab, x, weight, n, e);
     const int status = Zoltan_LB_Partition(
         p->zoltan, &changes, &n_gid, &n_lid, &n_import, &import_global, &import_local, &import_from,
         &import_part, &n_export, &export_global, &export_local, &export_to, &export_part);
@@ -137,10 +148,48 @@ int partition_cut(struct partition *p, const double *const *x, const float *weig
     return 0;
 }
 
+/* Zoltan can do so for bisection by coordinates alone. */
+int partition_store(struct partition *p, struct store *s, struct error *e)
+{
+    if (!p->zoltan)
+        return slab_store(&p->slab, s, e);
+    if (p->which != PARTITION_RCB)
+        return 0;
+    size_t n = Zoltan_Serialize_Size(p->zoltan);
+    char *cuts = calloc(n + 1, 1);
+    int status = cuts ? 0 : error_memory(e, "the domain", n);
+    if (!status && Zoltan_Serialize(p->zoltan, n, cuts) != ZOLTAN_OK)
+        status = error_set(e, EXIT_RUN, "Zoltan does not tell how it has cut the domain");
+    if (!status)
+        status = store_array(s, "cuts", STORE_U8, &cuts, &n, 0, e);
+    free(cuts);
+    return status;
+}
+
+int partition_restore(struct partition *p, struct store *s, bool *there, struct error *e)
+{
+    size_t n = 0;
+    char *cuts = NULL;
+    if (!p->zoltan) {
+        *there = store_has(s, "slabs");
+        return *there ? slab_store(&p->slab, s, e) : 0;
+    }
+    *there = p->which == PARTITION_RCB && store_has(s, "cuts");
+    if (!*there)
+        return 0;
+    int status = store_array(s, "cuts", STORE_U8, &cuts, &n, 0, e);
+    if (!status && Zoltan_Deserialize(p->zoltan, n, cuts) != ZOLTAN_OK)
+        status = store_broken(s, e, "the cuts of the domain");
+    free(cuts);
+    return status;
+}
+
 int partition_owner(const struct partition *p, const double *x)
 {
     double at[3] = {0.0, 0.0, 0.0};
     int rank = 0, part = 0;
+    if (!p->zoltan)
+        return slab_owner(&p->slab, x);
     askew(p->dim, x, at);
     if (Zoltan_LB_Point_PP_Assign(p->zoltan, at, &rank, &part) != ZOLTAN_OK)
         return 0;
@@ -170,6 +219,23 @@ int partition_cut(struct partition *p, const double *const *x, const float *weig
     (void)weight;
     (void)n;
     return error_set(e, EXIT_USAGE, "built without Zoltan: one rank only");
+}
+
+int partition_store(struct partition *p, struct store *s, struct error *e)
+{
+    (void)p;
+    (void)s;
+    (void)e;
+    return 0;
+}
+
+int partition_restore(struct partition *p, struct store *s, bool *there, struct error *e)
+{
+    (void)p;
+    (void)s;
+    (void)e;
+    *there = false;
+    return 0;
 }
 
 int partition_owner(const struct partition *p, const double *x)

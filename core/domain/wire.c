@@ -20,7 +20,7 @@ struct wire {
     MPI_Comm comm, alarm;
     MPI_Datatype term; /* of wire_reduce */
     MPI_Op merge;
-    MPI_Request *request; /* of parcels under way */
+    MPI_Request *request;                  /* of parcels under way */
     size_t n_request, n_receive, capacity; /* receives come first */
     bool alarmed;
     struct wire_count count;
@@ -77,7 +77,8 @@ int wire_open(struct wire **out, struct error *e)
     if (look_around(w) || MPI_Comm_dup(MPI_COMM_WORLD, &w->comm) ||
         MPI_Comm_dup(MPI_COMM_WORLD, &w->alarm) ||
         MPI_Type_contiguous((int)sizeof(struct term), MPI_BYTE, &w->term) ||
-        MPI_Type_commit(&w->term) || MPI_Op_create(merge, 1, &w->merge))
+        MPI_Type_commit(&w->term) || MPI_Op_create(merge, 1, &w->merge) ||
+        MPI_Comm_set_name(w->comm, "sph") || MPI_Comm_set_name(w->alarm, "sph alarm"))
         return failed(e);
     return 0;
 }
@@ -292,12 +293,11 @@ int wire_reduce(struct wire *w, double *value, const uint32_t *op, size_t n, str
     for (size_t k = 0; k < n; k++)
         term[k] = (struct term){value[k], op[k]};
     copy = copy_of(term, bytes, e);
-    const int status =
-        copy ? collective(
-                   w,
-                   MPI_Iallreduce(MPI_IN_PLACE, copy, (int)n, w->term, w->merge, w->comm, &request),
-                   &request, bytes, copy, term, bytes, e)
-             : -1;
+    const int status = copy ? collective(w,
+                                         MPI_Iallreduce(MPI_IN_PLACE, copy, (int)n, w->term,
+                                                        w->merge, w->comm, &request),
+                                         &request, bytes, copy, term, bytes, e)
+                            : -1;
     for (size_t k = 0; !status && k < n; k++)
         value[k] = term[k].value;
     free(term);
@@ -312,11 +312,11 @@ static int sum(struct wire *w, void *value, size_t n, MPI_Datatype type, struct 
     if (w->size == 1 || n == 0)
         return 0;
     void *copy = copy_of(value, bytes, e);
-    return copy
-               ? collective(
-                     w, MPI_Iallreduce(MPI_IN_PLACE, copy, (int)n, type, MPI_SUM, w->comm, &request),
-                     &request, bytes, copy, value, bytes, e)
-               : -1;
+    return copy ? collective(
+                      w,
+                      MPI_Iallreduce(MPI_IN_PLACE, copy, (int)n, type, MPI_SUM, w->comm, &request),
+                      &request, bytes, copy, value, bytes, e)
+                : -1;
 }
 
 int wire_exact(struct wire *w, struct exact_sum *exact, size_t n, struct error *e)

@@ -90,17 +90,30 @@ static size_t count_nothing(struct store *s, const char *path)
     return SIZE_MAX;
 }
 
-int checkpoint_create(struct checkpoint *c, const char *path, struct error *e)
+static int begin(struct checkpoint *c, const char *path, bool new, struct error *e)
 {
     *c = (struct checkpoint){.file = -1};
     c->shown = output_shown(path);
     if (!c->shown)
         return error_memory(e, "a path", strlen(path));
-    c->store = (struct store){false, block_write, count_nothing, c->shown, ""};
-    if (h5_create(&c->out, path, c->shown, e)) {
-        free(c->shown);
+    c->store = (struct store){
+        .block = block_write, .count = count_nothing, .shown = c->shown, .group = ""};
+    if ((new ? h5_create : h5_append)(&c->out, path, c->shown, e) == 0)
+        return 0;
+    free(c->shown);
+    c->shown = NULL;
+    return -1;
+}
+
+int checkpoint_append(struct checkpoint *c, const char *path, struct error *e)
+{
+    return begin(c, path, false, e);
+}
+
+int checkpoint_create(struct checkpoint *c, const char *path, struct error *e)
+{
+    if (begin(c, path, true, e))
         return -1;
-    }
     char what[] = WHAT, *text = what;
     uint64_t format = CHECKPOINT_FORMAT;
     uint32_t order = ORDER;
@@ -157,6 +170,38 @@ static size_t count_read(struct store *s, const char *path)
     return n != SIZE_MAX && (double)n > c->file_size ? SIZE_MAX : n;
 }
 
+/* Elements [first, first + n) of an open data set. */
+static int read_piece(hid_t set, hid_t type, hsize_t first, hsize_t n, void *data)
+{
+    const hid_t space = H5Dget_space(set), memory = H5Screate_simple(1, &n, NULL);
+    const bool good = space >= 0 && memory >= 0 &&
+                      H5Sselect_hyperslab(space, H5S_SELECT_SET, &first, NULL, &n, NULL) >= 0 &&
+                      H5Dread(set, type, memory, space, H5P_DEFAULT, data) >= 0;
+    if (memory >= 0)
+        H5Sclose(memory);
+    if (space >= 0)
+        H5Sclose(space);
+    return good ? 0 : -1;
+}
+
+static int piece_read(struct store *s, const char *path, enum store_type type, void *data,
+                      size_t first, size_t n, struct error *e)
+{
+    const struct checkpoint *c = (const struct checkpoint *)s;
+    const size_t found = count_read(s, path);
+    if (found == SIZE_MAX)
+        return store_broken(s, e, "%s is missing", path);
+    if (first > found || n > found - first)
+        return store_broken(s, e, "%s has %zu elements, not %zu", path, found, first + n);
+    if (n == 0)
+        return 0;
+    const hid_t set = H5Dopen2(c->file, path, H5P_DEFAULT);
+    const int status = set < 0 ? -1 : read_piece(set, type_of(type), first, n, data);
+    if (set >= 0)
+        H5Dclose(set);
+    return status ? store_broken(s, e, "%s cannot be read", path) : 0;
+}
+
 static int block_read(struct store *s, const char *path, enum store_type type, void *data, size_t n,
                       struct error *e)
 {
@@ -178,25 +223,15 @@ static int block_read(struct store *s, const char *path, enum store_type type, v
 /* Reads all of a data set and keeps nothing: HDF5 compares the checksums. */
 static int read_through(hid_t set)
 {
-    const hid_t type = H5Dget_type(set), space = H5Dget_space(set);
+    const hid_t type = H5Dget_type(set);
     const size_t n = extent_of(set), size = type < 0 ? 0 : H5Tget_size(type);
     const hsize_t piece = n < PIECE ? n : PIECE;
-    int status = space < 0 || n == SIZE_MAX || size == 0 || size > 8 ? -1 : 0;
+    int status = n == SIZE_MAX || size == 0 || size > 8 ? -1 : 0;
     char *room = status ? NULL : malloc(piece * size + 1);
-    for (hsize_t first = 0; room && !status && first < n; first += piece) {
-        const hsize_t some = n - first < piece ? n - first : piece;
-        const hid_t memory = H5Screate_simple(1, &some, NULL);
-        if (memory < 0 ||
-            H5Sselect_hyperslab(space, H5S_SELECT_SET, &first, NULL, &some, NULL) < 0 ||
-            H5Dread(set, type, memory, space, H5P_DEFAULT, room) < 0)
-            status = -1;
-        if (memory >= 0)
-            H5Sclose(memory);
-    }
+    for (hsize_t first = 0; room && !status && first < n; first += piece)
+        status = read_piece(set, type, first, n - first < piece ? n - first : piece, room);
     if (type >= 0)
         H5Tclose(type);
-    if (space >= 0)
-        H5Sclose(space);
     status = room ? status : -1;
     free(room);
     return status;
@@ -220,8 +255,8 @@ static herr_t visit_link(hid_t group, const char *name, const H5L_info_t *info, 
     return status ? store_broken(&v->c->store, v->e, "%s cannot be read", name) : 0;
 }
 
-/* It is ours, and whole. */
-static int check(struct checkpoint *c, const char *path, struct error *e)
+/* It is ours, and whole; known: that has been looked at. */
+static int check(struct checkpoint *c, const char *path, bool known, struct error *e)
 {
     char *what = NULL;
     uint64_t format = 0;
@@ -244,6 +279,8 @@ static int check(struct checkpoint *c, const char *path, struct error *e)
         return error_set(e, EXIT_USAGE, "%s was made on a machine with another order of bytes",
                          path);
     struct visit v = {c, e};
+    if (known)
+        return 0;
     if (e)
         e->text[0] = '\0';
     if (H5Lvisit(c->file, H5_INDEX_NAME, H5_ITER_NATIVE, visit_link, &v) >= 0)
@@ -251,21 +288,31 @@ static int check(struct checkpoint *c, const char *path, struct error *e)
     return e && e->text[0] ? -1 : store_broken(&c->store, e, "its list of blocks cannot be read");
 }
 
-int checkpoint_open(struct checkpoint *c, const char *path, struct error *e)
+static int open_file(struct checkpoint *c, const char *path, bool known, struct error *e)
 {
     struct stat s;
     *c = (struct checkpoint){.file = -1, .shown = strdup(path)};
     if (!c->shown)
         return error_memory(e, "a path", strlen(path));
-    c->store = (struct store){true, block_read, count_read, c->shown, ""};
+    c->store = (struct store){true, block_read, count_read, c->shown, "", piece_read};
     c->file = h5_open(path, e);
     if (c->file >= 0 && stat(path, &s) == 0) {
         c->file_size = (double)s.st_size;
-        if (check(c, path, e) == 0)
+        if (check(c, path, known, e) == 0)
             return 0;
     }
     checkpoint_close(c);
     return -1;
+}
+
+int checkpoint_open(struct checkpoint *c, const char *path, struct error *e)
+{
+    return open_file(c, path, false, e);
+}
+
+int checkpoint_open_known(struct checkpoint *c, const char *path, struct error *e)
+{
+    return open_file(c, path, true, e);
 }
 
 void checkpoint_close(struct checkpoint *c)

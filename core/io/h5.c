@@ -6,6 +6,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -35,6 +36,9 @@ static H5FD_t *disk_open(const char *name, unsigned flags, hid_t fapl, haddr_t m
         return NULL;
     }
     f->disk = *info;
+    struct stat s;
+    if (fstat(f->disk->fd, &s) == 0 && S_ISREG(s.st_mode))
+        f->eof = (haddr_t)s.st_size;
     return &f->base;
 }
 
@@ -181,6 +185,7 @@ int h5_error(struct error *e, enum exit_code code, const char *verb, const char 
 
 static void quieten(void)
 {
+    signal(SIGXFSZ, SIG_IGN); /* an error will do */
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
 }
 
@@ -197,22 +202,35 @@ static hid_t access_list(const struct h5_out *out)
     return -1;
 }
 
-int h5_create(struct h5_out *out, const char *path, const char *shown, struct error *e)
+/* fd: of a new file, or of one that is there. */
+static int begin(struct h5_out *out, int fd, bool new, struct error *e)
 {
-    *out = (struct h5_out){path, shown, -1, -1, {-1, 0}};
     quieten();
-    out->disk.fd = open(path, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (out->disk.fd < 0)
-        return error_set(e, EXIT_RUN, "cannot write %s: %s", shown, strerror(errno));
+    out->disk.fd = fd;
+    if (fd < 0)
+        return error_set(e, EXIT_RUN, "cannot write %s: %s", out->shown, strerror(errno));
     out->driver = H5FDregister(&disk_driver);
     const hid_t fapl = out->driver < 0 ? -1 : access_list(out);
     if (fapl >= 0)
-        out->file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, fapl);
+        out->file = new ? H5Fcreate(out->path, H5F_ACC_TRUNC, H5P_DEFAULT, fapl)
+                        : H5Fopen(out->path, H5F_ACC_RDWR, fapl);
     if (out->file < 0)
-        h5_error(e, EXIT_RUN, "write", shown);
+        h5_error(e, EXIT_RUN, "write", out->shown);
     if (fapl >= 0)
         H5Pclose(fapl);
     return out->file < 0 ? h5_close(out, 1, e) : 0;
+}
+
+int h5_create(struct h5_out *out, const char *path, const char *shown, struct error *e)
+{
+    *out = (struct h5_out){path, shown, -1, -1, {-1, 0}};
+    return begin(out, open(path, O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC, 0666), true, e);
+}
+
+int h5_append(struct h5_out *out, const char *path, const char *shown, struct error *e)
+{
+    *out = (struct h5_out){path, shown, -1, -1, {-1, 0}};
+    return begin(out, open(path, O_RDWR | O_CLOEXEC | O_NOFOLLOW), false, e);
 }
 
 int h5_close(struct h5_out *out, int failed, struct error *e)
@@ -234,6 +252,58 @@ int h5_close(struct h5_out *out, int failed, struct error *e)
     out->disk.fd = -1;
     return failed ? -1 : 0;
 }
+
+int h5_reserve(const char *path, const char *shown, struct error *e)
+{
+    struct stat s;
+    const int fd = open(path, O_RDWR | O_CLOEXEC | O_NOFOLLOW);
+    int failed = fd < 0 || fstat(fd, &s) ? errno : 0;
+    if (!failed && s.st_size > 0)
+        failed = posix_fallocate(fd, 0, s.st_size);
+    if (fd >= 0 && close(fd) && !failed)
+        failed = errno;
+    if (!failed)
+        return 0;
+    unlink(path);
+    return error_set(e, EXIT_RUN, "cannot write %s: %s", shown, strerror(failed));
+}
+
+#if SPH_HAVE_MPI && defined(H5_HAVE_PARALLEL)
+
+bool h5_is_parallel(void)
+{
+    return true;
+}
+
+hid_t h5_join(const char *path, const char *shown, struct error *e)
+{
+    hid_t file = -1;
+    quieten();
+    const hid_t fapl = H5Pcreate(H5P_FILE_ACCESS);
+    if (fapl >= 0 && H5Pset_fapl_mpio(fapl, MPI_COMM_WORLD, MPI_INFO_NULL) >= 0 &&
+        H5Pset_libver_bounds(fapl, H5F_LIBVER_V18, H5F_LIBVER_V18) >= 0)
+        file = H5Fopen(path, H5F_ACC_RDWR, fapl);
+    if (file < 0)
+        h5_error(e, EXIT_RUN, "write", shown);
+    if (fapl >= 0)
+        H5Pclose(fapl);
+    return file;
+}
+
+#else
+
+bool h5_is_parallel(void)
+{
+    return false;
+}
+
+hid_t h5_join(const char *path, const char *shown, struct error *e)
+{
+    (void)path;
+    return error_set(e, EXIT_RUN, "cannot write %s: this HDF5 is for one process", shown);
+}
+
+#endif
 
 hid_t h5_open(const char *path, struct error *e)
 {

@@ -217,6 +217,7 @@ static bool file_has_mark(int folder, const char *name, const char *mark, size_t
 static bool is_rows(const char *name)
 {
     return strcmp(name, "log.csv") == 0 || strcmp(name, "errors.csv") == 0 ||
+           strcmp(name, "ranks.csv") == 0 ||
            ((starts_with(name, "probe_") || starts_with(name, "profile_")) &&
             ends_with(name, ".csv"));
 }
@@ -231,7 +232,8 @@ static enum owner file_owner(int folder, const char *name)
         return NOBODY;
     const bool regular = S_ISREG(s.st_mode);
     if (starts_with(name, ASIDE_PREFIX) || output_is_snapshot(name) ||
-        output_checkpoint_step(name) >= 0 || strcmp(name, OUTPUT_FAILED) == 0)
+        output_checkpoint_step(name) >= 0 || strcmp(name, OUTPUT_FAILED) == 0 ||
+        strcmp(name, OUTPUT_EARLIER) == 0)
         return regular ? OURS : FOREIGN;
     if (is_rows(name)) {
         const char *mark = strcmp(name, "log.csv") == 0 ? OUTPUT_LOG_MARK : CSV_MARK;
@@ -272,10 +274,13 @@ static int clear_entry(const struct output *o, int folder, const char *name, boo
 struct kept {
     bool any;
     uint64_t snapshots, step;
+    const char *name; /* or this one alone */
 };
 
 static bool is_kept(const struct kept *k, const char *name)
 {
+    if (k->name && strcmp(name, k->name) == 0)
+        return true;
     if (!k->any || starts_with(name, ASIDE_PREFIX) || strcmp(name, "summary.json") == 0 ||
         strcmp(name, OUTPUT_FAILED) == 0)
         return false;
@@ -285,7 +290,7 @@ static bool is_kept(const struct kept *k, const char *name)
     return step < 0 || (uint64_t)step <= k->step;
 }
 
-static int clear_but(const struct output *o, const struct kept *kept, struct error *e)
+static int clear(const struct output *o, const struct kept *kept, struct error *e)
 {
     DIR *folder = opendir(o->dir);
     if (!folder)
@@ -307,13 +312,27 @@ static int clear_but(const struct output *o, const struct kept *kept, struct err
 int output_clear(const struct output *o, struct error *e)
 {
     const struct kept none = {0};
-    return clear_but(o, &none, e);
+    return clear(o, &none, e);
+}
+
+int output_clear_but(const struct output *o, const char *name, struct error *e)
+{
+    const struct kept kept = {.name = name};
+    if (clear(o, &kept, e))
+        return -1;
+    char *from = output_path(o, name ? name : ""), *to = output_path(o, OUTPUT_EARLIER);
+    int status = from && to ? 0 : error_memory(e, "a path", strlen(o->dir));
+    if (!status && name && rename(from, to))
+        status = error_set(e, EXIT_USAGE, "cannot keep %s: %s", from, strerror(errno));
+    free(from);
+    free(to);
+    return status;
 }
 
 int output_cut(const struct output *o, uint64_t snapshots, uint64_t step, struct error *e)
 {
-    const struct kept kept = {true, snapshots, step};
-    return clear_but(o, &kept, e);
+    const struct kept kept = {true, snapshots, step, NULL};
+    return clear(o, &kept, e);
 }
 
 void output_sweep(const struct output *o)

@@ -15,7 +15,7 @@ struct output {
 
 /* Makes the folder (and parents) if need be, claims it (a lock file: two runs never share one) and
  * removes the results of an earlier run there, only if they are ours (snapshot_*.vtkhdf, log.csv,
- * errors.csv, probe_*.csv, profile_*.csv, summary.json, checkpoint_*.h5 and pictures that say that
+ * errors.csv, ranks.csv, probe_*.csv, profile_*.csv, summary.json, checkpoint_*.h5 and pictures that say that
  * they are ours); other files stay. A log.csv, another of these tables or a summary.json that is not
  * ours is an error: the run would overwrite it. Errors: not a folder, not writable, in use (by which
  * process). */
@@ -23,6 +23,8 @@ int output_open(struct output *o, const char *dir, struct error *e);
 /* The two halves of it: a run that resumes claims and does not clear. */
 int output_claim(struct output *o, const char *dir, struct error *e);
 int output_clear(const struct output *o, struct error *e);
+/* The second half, but for the checkpoint `name` (NULL: none), which is kept as OUTPUT_EARLIER. */
+int output_clear_but(const struct output *o, const char *name, struct error *e);
 /* Of the results there, removes what a run that goes on after `step`, with snapshot number `snapshots`, makes
  * again: later snapshots and checkpoints, a failed state, the summary, what was being written. */
 int output_cut(const struct output *o, uint64_t snapshots, uint64_t step, struct error *e);
@@ -56,6 +58,8 @@ long long output_checkpoint_step(const char *name);
 void output_checkpoint_name(char *out, size_t size, unsigned long long step);
 /* The state in which a run failed: none of those, so neither resumed from nor pruned. */
 #define OUTPUT_FAILED "checkpoint_failed.h5"
+/* Of an earlier run that did not end: "latest" is of this run alone. */
+#define OUTPUT_EARLIER "checkpoint_earlier.h5"
 
 /* In every PNG of ours, so that a later run knows which pictures it may remove. */
 #define OUTPUT_PNG_KEY "Software"

@@ -1,38 +1,16 @@
 /* snapshot.c -- writes snapshots as VTKHDF: the particles as a grid of vertex cells, what they
- * are and where they come from as attributes and field data. Reading is in snapshot_read.c. */
+ * are and where they come from as attributes and field data. Reading is in snapshot_read.c; what
+ * several processes do together in snapshot_together.c. */
 #include "config.h"
 
-#include "io/snapshot.h"
+#include "io/snapshot_private.h"
 
-#include "io/h5.h"
 #include "io/output.h"
-#include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
-#define SLAB ((size_t)1 << 15) /* rows converted and written at once */
+#define SLAB SNAPSHOT_SLAB
 #define VTK_VERTEX 1
-#define NOT_THERE ((size_t)-1)
-
-/* A column of the file: the union over the arrays. */
-struct out_column {
-    const struct column *like; /* of the first array that has it */
-    uint32_t ncomp;            /* components in the file */
-    size_t *at;                /* [arrays] its index in each, or NOT_THERE */
-};
-
-struct writer {
-    struct h5_out file;
-    hid_t group;
-    const struct particles *arrays;
-    size_t n_array;
-    size_t total; /* particles */
-    struct out_column *column;
-    size_t n_column;
-    void *slab;
-    struct error *e;
-};
 
 static int failed(struct writer *w)
 {
@@ -108,116 +86,45 @@ static int put_text(struct writer *w, hid_t where, const char *name, const char 
 
 /* -- Columns ----------------------------------------------------------------------------------- */
 
-/* Fills rows [first, first + count) of array `a` into the slab. */
-typedef void fill_fn(const struct writer *w, const void *what, size_t a, size_t first,
-                     size_t count);
-
-static bool is_integer(uint32_t type)
-{
-    return type == SPH_INT32 || type == SPH_INT64;
-}
-
-static void fill_nothing(const struct writer *w, const struct out_column *c, size_t values)
-{
-    for (size_t i = 0; i < values; i++) {
-        if (c->like->type == SPH_INT32)
-            ((int32_t *)w->slab)[i] = -1;
-        else if (c->like->type == SPH_INT64)
-            ((int64_t *)w->slab)[i] = -1;
-        else
-            ((double *)w->slab)[i] = (double)NAN;
-    }
-}
-
-static void fill_column(const struct writer *w, const void *what, size_t a, size_t first,
-                        size_t count)
-{
-    const struct out_column *c = what;
-    if (c->at[a] == NOT_THERE) {
-        fill_nothing(w, c, count * c->ncomp);
-        return;
-    }
-    const struct column *from = &w->arrays[a].column[c->at[a]];
-    const bool real = column_is_real(from);
-    if (from->ncomp < c->ncomp)
-        memset(w->slab, 0, count * c->ncomp * (real ? sizeof(double) : from->size));
-    for (uint32_t k = 0; k < from->ncomp; k++) {
-        const size_t offset = k * from->plane + first;
-        if (real) /* doubles in the file, whatever they are in memory */
-            for (size_t i = 0; i < count; i++)
-                ((double *)w->slab)[i * c->ncomp + k] = column_get(from, k, first + i);
-        else if (from->size == sizeof(int64_t))
-            for (size_t i = 0; i < count; i++)
-                memcpy((char *)w->slab + (i * c->ncomp + k) * 8,
-                       (char *)from->data + (offset + i) * 8, 8);
-        else
-            for (size_t i = 0; i < count; i++)
-                memcpy((char *)w->slab + (i * c->ncomp + k) * 4,
-                       (char *)from->data + (offset + i) * 4, 4);
-    }
-}
-
-/* Positions become doubles, whatever they are in memory. */
-static void fill_points(const struct writer *w, const void *what, size_t a, size_t first,
-                        size_t count)
-{
-    const struct out_column *c = what;
-    double *to = w->slab;
-    const struct column *from = c->at[a] == NOT_THERE ? NULL : &w->arrays[a].column[c->at[a]];
-    for (size_t i = 0; i < count; i++)
-        for (uint32_t k = 0; k < 3; k++) {
-            double x = 0.0;
-            if (from && k < from->ncomp)
-                x = column_get(from, k, first + i);
-            to[3 * i + k] = x;
-        }
-}
-
-static void fill_array(const struct writer *w, const void *what, size_t a, size_t first,
-                       size_t count)
-{
-    (void)what;
-    (void)first;
-    for (size_t i = 0; i < count; i++)
-        ((int32_t *)w->slab)[i] = (int32_t)a;
-}
-
 /* Writes a data set of all particles, slab by slab, so that a big one needs no second copy. */
-static int put_rows(struct writer *w, hid_t set, hid_t type, uint32_t ncomp, fill_fn *fill,
-                    const void *what)
+static int put_rows(struct writer *w, hid_t set, const struct out_set *what)
 {
     const hid_t space = H5Dget_space(set);
     int result = space < 0 ? failed(w) : 0;
-    hsize_t row = 0;
-    for (size_t a = 0; a < w->n_array; a++)
-        for (size_t i = 0; i < w->arrays[a].n && result == 0; i += SLAB) {
-            const size_t left = w->arrays[a].n - i, count = left < SLAB ? left : SLAB;
-            const hsize_t start[2] = {row, 0}, extent[2] = {count, ncomp};
-            const hid_t memory = H5Screate_simple(ncomp > 1 ? 2 : 1, extent, NULL);
-            fill(w, what, a, i, count);
-            if (memory < 0 ||
-                H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, extent, NULL) < 0 ||
-                H5Dwrite(set, type, memory, space, H5P_DEFAULT, w->slab) < 0)
-                result = failed(w);
-            else if (w->file.disk.error)
-                result = -1; /* h5_close says which */
-            if (memory >= 0)
-                H5Sclose(memory);
-            row += count;
-        }
+    for (size_t row = 0; row < w->total && result == 0; row += SLAB) {
+        const size_t left = w->total - row, count = left < SLAB ? left : SLAB;
+        const hsize_t start[2] = {row, 0}, extent[2] = {count, what->ncomp};
+        const hid_t memory = H5Screate_simple(what->ncomp > 1 ? 2 : 1, extent, NULL);
+        snapshot_rows(w, what, row, count);
+        if (memory < 0 ||
+            H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, extent, NULL) < 0 ||
+            H5Dwrite(set, what->type, memory, space, H5P_DEFAULT, w->slab) < 0)
+            result = failed(w);
+        else if (w->file.disk.error)
+            result = -1; /* h5_close says which */
+        if (memory >= 0)
+            H5Sclose(memory);
+    }
     if (space >= 0)
         H5Sclose(space);
     return result;
 }
 
-/* A data set of all particles in `where`; its id, or a negative number. */
-static hid_t make_rows(struct writer *w, hid_t where, const char *name, hid_t type, uint32_t ncomp)
+/* A data set of all particles in `where`; its id, or a negative number. One that is filled later on has its place
+ * in the file at once. */
+static hid_t make_rows(struct writer *w, hid_t where, const char *name, const struct out_set *what)
 {
-    const hsize_t extent[2] = {w->total, ncomp};
-    const hid_t space = H5Screate_simple(ncomp > 1 ? 2 : 1, extent, NULL);
-    const hid_t set = H5Dcreate2(where, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    const hsize_t extent[2] = {w->total, what->ncomp};
+    const hid_t space = H5Screate_simple(what->ncomp > 1 ? 2 : 1, extent, NULL);
+    const hid_t list = H5Pcreate(H5P_DATASET_CREATE);
+    hid_t set = -1;
+    if (list >= 0 && (!w->apart || (H5Pset_alloc_time(list, H5D_ALLOC_TIME_EARLY) >= 0 &&
+                                    H5Pset_fill_time(list, H5D_FILL_TIME_NEVER) >= 0)))
+        set = H5Dcreate2(where, name, what->type, space, H5P_DEFAULT, list, H5P_DEFAULT);
     if (set < 0)
         failed(w);
+    if (list >= 0)
+        H5Pclose(list);
     if (space >= 0)
         H5Sclose(space);
     return set;
@@ -230,100 +137,67 @@ static const char *component_names(const struct column *c)
     return c->ncomp == 1 ? "xx" : c->ncomp == 4 ? "xx xy yx yy" : "xx xy xz yx yy yz zx zy zz";
 }
 
-static int put_column(struct writer *w, hid_t where, const char *name, hid_t type,
-                      const struct out_column *c, fill_fn *fill)
+static int put_set(struct writer *w, const struct out_set *what)
 {
-    const hid_t set = make_rows(w, where, name, type, c->ncomp);
+    const hid_t set = make_rows(w, w->group, what->name, what);
+    const struct column *like = what->of ? what->of->like : NULL;
     if (set < 0)
         return -1;
-    int result = put_rows(w, set, type, c->ncomp, fill, c);
-    if (result == 0 && c->like)
-        result = put_text_attribute(w, set, "unit", c->like->unit) ||
-                 put_text_attribute(w, set, "doc", c->like->doc) ||
-                 ((c->like->type == SPH_SYM || c->like->type == SPH_MATRIX) &&
-                  put_text_attribute(w, set, "components", component_names(c->like)));
+    int result = w->apart ? 0 : put_rows(w, set, what);
+    if (result == 0 && like)
+        result = put_text_attribute(w, set, "unit", like->unit) ||
+                 put_text_attribute(w, set, "doc", like->doc) ||
+                 ((like->type == SPH_SYM || like->type == SPH_MATRIX) &&
+                  put_text_attribute(w, set, "components", component_names(like)));
     H5Dclose(set);
     return result ? -1 : 0;
 }
 
-/* -- Which columns ----------------------------------------------------------------------------- */
-
-static int note_column(struct writer *w, size_t a, size_t k)
-{
-    const struct column *c = &w->arrays[a].column[k];
-    struct out_column *o = NULL;
-    for (size_t i = 0; i < w->n_column && !o; i++)
-        if (strcmp(w->column[i].like->name, c->name) == 0)
-            o = &w->column[i];
-    if (!o) {
-        if (!*c->name || strchr(c->name, '/') || strcmp(c->name, ".") == 0 ||
-            strcmp(c->name, "array") == 0)
-            return error_set(w->e, EXIT_USAGE, "a column of a snapshot cannot be called \"%s\"",
-                             c->name);
-        o = &w->column[w->n_column];
-        o->at = malloc(w->n_array * sizeof *o->at);
-        if (!o->at)
-            return error_memory(w->e, "a snapshot", w->n_array * sizeof *o->at);
-        w->n_column++;
-        o->like = c;
-        o->ncomp = c->type == SPH_VECTOR ? 3 : c->ncomp;
-        for (size_t i = 0; i < w->n_array; i++)
-            o->at[i] = NOT_THERE;
-    }
-    if (o->like->type != c->type || o->like->ncomp != c->ncomp)
-        return error_set(w->e, EXIT_USAGE,
-                         "column \"%s\" of array \"%s\" differs in type from that of other arrays",
-                         c->name, w->arrays[a].name);
-    o->at[a] = k;
-    return 0;
-}
-
-static int note_columns(struct writer *w)
-{
-    size_t most = 1, widest = 3;
-    for (size_t a = 0; a < w->n_array; a++) {
-        most += w->arrays[a].n_column;
-        w->total += w->arrays[a].n;
-    }
-    w->column = calloc(most, sizeof *w->column);
-    if (!w->column)
-        return error_memory(w->e, "a snapshot", most * sizeof *w->column);
-    for (size_t a = 0; a < w->n_array; a++)
-        for (size_t k = 0; k < w->arrays[a].n_column; k++)
-            if (w->arrays[a].column[k].output || strcmp(w->arrays[a].column[k].name, "x") == 0)
-                if (note_column(w, a, k))
-                    return -1;
-    for (size_t i = 0; i < w->n_column; i++)
-        if (w->column[i].ncomp > widest)
-            widest = w->column[i].ncomp;
-    w->slab = malloc(SLAB * widest * sizeof(double));
-    return w->slab ? 0 : error_memory(w->e, "a snapshot", SLAB * widest * sizeof(double));
-}
-
 /* -- The parts of the file --------------------------------------------------------------------- */
+
+/* A number of each part. */
+static int put_counts(struct writer *w, const char *name)
+{
+    return put_value(w, w->group, name, H5T_NATIVE_INT64, w->parts.rows, w->parts.n, false);
+}
 
 static int put_header(struct writer *w)
 {
-    const int64_t version[2] = {1, 0}, n = (int64_t)w->total;
+    const int64_t version[2] = {1, 0};
     const char kind[] = "UnstructuredGrid";
     const hid_t type = H5Tcopy(H5T_C_S1);
     if (type < 0 || H5Tset_size(type, sizeof kind - 1) < 0 ||
         H5Tset_strpad(type, H5T_STR_NULLPAD) < 0)
         return failed(w);
-    const int result =
-        put_value(w, w->group, "Version", H5T_NATIVE_INT64, version, 2, true) ||
-        put_value(w, w->group, "Type", type, kind, 1, true) ||
-        put_value(w, w->group, "NumberOfPoints", H5T_NATIVE_INT64, &n, 1, false) ||
-        put_value(w, w->group, "NumberOfCells", H5T_NATIVE_INT64, &n, 1, false) ||
-        put_value(w, w->group, "NumberOfConnectivityIds", H5T_NATIVE_INT64, &n, 1, false);
+    const int result = put_value(w, w->group, "Version", H5T_NATIVE_INT64, version, 2, true) ||
+                       put_value(w, w->group, "Type", type, kind, 1, true) ||
+                       put_counts(w, "NumberOfPoints") || put_counts(w, "NumberOfCells") ||
+                       put_counts(w, "NumberOfConnectivityIds");
     H5Tclose(type);
     return result ? -1 : 0;
 }
 
-/* The cells that VTK wants: vertex i is point i. Numbers without surprise, so they are packed:
- * 17 bytes a particle become less than one. */
-static int put_cells(struct writer *w, const char *name, hid_t type, size_t size, size_t n)
+/* Which number of its part is next. */
+struct cursor {
+    size_t part, at;
+};
+
+/* The next n cells' numbers, in parts of so many more than their points. */
+static void number_cells(const struct writer *w, struct cursor *c, size_t more, int64_t *to,
+                         size_t n)
 {
+    for (size_t k = 0; k < n; k++) {
+        for (; c->at == w->parts.rows[c->part] + more; c->part++)
+            c->at = 0;
+        to[k] = (int64_t)c->at++;
+    }
+}
+
+/* The cells that VTK wants, in each part: vertex i is point i. Numbers without surprise, so they are
+ * packed: 17 bytes a particle become less than one. */
+static int put_cells(struct writer *w, const char *name, hid_t type, size_t more)
+{
+    const hsize_t n = w->total + more * w->parts.n;
     const hsize_t extent[1] = {n}, chunk[1] = {n < SLAB ? (n ? n : 1) : SLAB};
     const hid_t space = H5Screate_simple(1, extent, NULL), list = H5Pcreate(H5P_DATASET_CREATE);
     if (list >= 0 && n > 0 && H5Zfilter_avail(H5Z_FILTER_DEFLATE) > 0) {
@@ -333,13 +207,13 @@ static int put_cells(struct writer *w, const char *name, hid_t type, size_t size
     }
     const hid_t set = H5Dcreate2(w->group, name, type, space, H5P_DEFAULT, list, H5P_DEFAULT);
     int result = set < 0 ? failed(w) : 0;
-    for (size_t i = 0; i < n && result == 0; i += SLAB) {
+    struct cursor next = {0, 0};
+    for (hsize_t i = 0; i < n && result == 0; i += SLAB) {
         const hsize_t start[1] = {i}, count[1] = {n - i < SLAB ? n - i : SLAB};
-        if (size == 1)
+        if (H5Tget_size(type) == 1)
             memset(w->slab, VTK_VERTEX, count[0]);
         else
-            for (size_t k = 0; k < count[0]; k++)
-                ((int64_t *)w->slab)[k] = (int64_t)(i + k);
+            number_cells(w, &next, more, w->slab, count[0]);
         const hid_t memory = H5Screate_simple(1, count, NULL);
         if (memory < 0 ||
             H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL) < 0 ||
@@ -359,18 +233,13 @@ static int put_cells(struct writer *w, const char *name, hid_t type, size_t size
 
 static int put_grid(struct writer *w)
 {
-    struct out_column *x = NULL;
-    for (size_t i = 0; i < w->n_column; i++)
-        if (strcmp(w->column[i].like->name, "x") == 0)
-            x = &w->column[i];
-    if (!x)
+    const struct out_set points = snapshot_set(w, 0);
+    if (!points.of)
         return error_set(w->e, EXIT_RUN, "cannot write %s: the particles have no positions",
                          w->file.shown);
-    x->ncomp = 3;
-    return put_column(w, w->group, "Points", H5T_NATIVE_DOUBLE, x, fill_points) ||
-                   put_cells(w, "Connectivity", H5T_NATIVE_INT64, 8, w->total) ||
-                   put_cells(w, "Offsets", H5T_NATIVE_INT64, 8, w->total + 1) ||
-                   put_cells(w, "Types", H5T_NATIVE_UINT8, 1, w->total)
+    return put_set(w, &points) || put_cells(w, "Connectivity", H5T_NATIVE_INT64, 0) ||
+                   put_cells(w, "Offsets", H5T_NATIVE_INT64, 1) ||
+                   put_cells(w, "Types", H5T_NATIVE_UINT8, 0)
                ? -1
                : 0;
 }
@@ -380,18 +249,13 @@ static int put_columns(struct writer *w)
     const hid_t where = H5Gcreate2(w->group, "PointData", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     if (where < 0)
         return failed(w);
-    const struct out_column of_array = {NULL, 1, NULL};
-    int result = put_column(w, where, "array", H5T_NATIVE_INT32, &of_array, fill_array);
-    for (size_t i = 0; i < w->n_column && result == 0; i++) {
-        const struct column *c = w->column[i].like;
-        const hid_t type = c->type == SPH_INT32  ? H5T_NATIVE_INT32
-                           : is_integer(c->type) ? H5T_NATIVE_INT64
-                                                 : H5T_NATIVE_DOUBLE;
-        if (strcmp(c->name, "x") != 0)
-            result = put_column(w, where, c->name, type, &w->column[i], fill_column);
-    }
     H5Gclose(where);
-    return result;
+    for (size_t k = 1; k <= w->n_column; k++) {
+        const struct out_set set = snapshot_set(w, k);
+        if (put_set(w, &set))
+            return -1;
+    }
+    return 0;
 }
 
 static int put_array_list(struct writer *w, hid_t where)
@@ -402,7 +266,7 @@ static int put_array_list(struct writer *w, hid_t where)
     if (name && size) {
         for (size_t a = 0; a < w->n_array; a++) {
             name[a] = w->arrays[a].name;
-            size[a] = (int64_t)w->arrays[a].n;
+            size[a] = (int64_t)w->parts.size[a];
         }
         result = put_texts(w, where, "array_names", name, w->n_array) ||
                  put_value(w, where, "array_sizes", H5T_NATIVE_INT64, size, w->n_array, false);
@@ -480,20 +344,45 @@ static int put_all(struct writer *w, const struct snapshot_meta *meta)
     return result ? -1 : 0;
 }
 
+/* All of the file, or all but the particles' rows. */
+static int write_file(struct writer *w, const char *path, const struct snapshot_meta *meta,
+                      struct error *e)
+{
+    char *shown = output_shown(path);
+    for (size_t k = 0; k < w->parts.n; k++)
+        w->total += w->parts.rows[k];
+    int result = shown ? snapshot_columns(w) : error_memory(e, "a path", strlen(path));
+    if (result == 0)
+        result = h5_create(&w->file, path, shown, e);
+    if (result == 0)
+        result = h5_close(&w->file, put_all(w, meta), e);
+    if (result == 0 && w->apart)
+        result = h5_reserve(path, shown, e);
+    snapshot_columns_free(w);
+    free(shown);
+    return result;
+}
+
 int snapshot_write(const char *path, const struct particles *arrays, size_t n,
                    const struct snapshot_meta *meta, struct error *e)
 {
     struct writer w = {.group = -1, .arrays = arrays, .n_array = n, .e = e};
-    char *shown = output_shown(path);
-    int result = shown ? note_columns(&w) : error_memory(e, "a path", strlen(path));
-    if (result == 0)
-        result = h5_create(&w.file, path, shown, e);
-    if (result == 0)
-        result = h5_close(&w.file, put_all(&w, meta), e);
-    for (size_t i = 0; i < w.n_column; i++)
-        free(w.column[i].at);
-    free(w.column);
-    free(w.slab);
-    free(shown);
+    uint64_t total = 0, *size = calloc(n + 1, sizeof *size);
+    if (!size)
+        return error_memory(e, "a snapshot", n * sizeof *size);
+    for (size_t a = 0; a < n; a++)
+        total += size[a] = arrays[a].n;
+    w.parts = (struct snapshot_parts){1, 0, &total, size};
+    const int result = write_file(&w, path, meta, e);
+    free(size);
     return result;
+}
+
+int snapshot_prepare(const char *path, const struct particles *arrays, size_t n,
+                     const struct snapshot_parts *parts, const struct snapshot_meta *meta,
+                     struct error *e)
+{
+    struct writer w = {
+        .group = -1, .arrays = arrays, .n_array = n, .parts = *parts, .apart = true, .e = e};
+    return write_file(&w, path, meta, e);
 }

@@ -26,6 +26,25 @@ struct snapshot_meta {
 int snapshot_write(const char *path, const struct particles *arrays, size_t n,
                    const struct snapshot_meta *meta, struct error *e);
 
+/* A file that several processes write: a partition of each, in their order. */
+struct snapshot_parts {
+    size_t n, mine;       /* partitions; this process's */
+    const uint64_t *rows; /* [n]: particles of each */
+    const uint64_t *size; /* [arrays]: particles of all of them */
+};
+
+/* Whether processes can write one file together: with MPI, and an HDF5 that is made for it. */
+bool snapshot_can_fill(void);
+/* One of them makes the file, all but what particles have: for that there is room then, on the disk as well.
+ * When it fails, the file is removed. */
+int snapshot_prepare(const char *path, const struct particles *arrays, size_t n,
+                     const struct snapshot_parts *parts, const struct snapshot_meta *meta,
+                     struct error *e);
+/* Then each of MPI's processes calls this, and all of them fail alike; the file stays. It waits for them without
+ * looking for an alarm (domain/wire.h): all must be known to come. */
+int snapshot_fill(const char *path, const struct particles *arrays, size_t n,
+                  const struct snapshot_parts *parts, struct error *e);
+
 struct snapshot_column {
     char *name, *unit, *doc; /* unit and doc may be "" */
     uint32_t ncomp;

@@ -96,6 +96,7 @@ struct summary {
     cJSON *plan;   /* owned by the caller; duplicated; NULL: an empty one */
     cJSON *device; /* likewise; what a run on a device cost there; NULL: it was on the processor */
     cJSON *shared; /* likewise: passes of which the time stands with another one; NULL: none */
+    cJSON *on_ranks; /* likewise: what several ranks came to; NULL: one rank */
     const struct summary_plugin *plugin;
     size_t n_plugin;
     int threads, ranks;

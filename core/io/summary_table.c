@@ -181,6 +181,25 @@ static void print_device(const struct summary *s, FILE *out, int width)
             100 * member(sweeps, "share_of_rate"), 100 * member(sweeps, "share_of_bandwidth"));
 }
 
+/* How evenly the work was shared, and what that took. */
+static void print_ranks(const struct summary *s, FILE *out, int width)
+{
+    const cJSON *imbalance = cJSON_GetObjectItemCaseSensitive(s->on_ranks, "imbalance");
+    const cJSON *exchange = cJSON_GetObjectItemCaseSensitive(s->on_ranks, "exchange");
+    const char *partition =
+        cJSON_GetStringValue(cJSON_GetObjectItemCaseSensitive(s->on_ranks, "partition"));
+    const double bytes = member(exchange, "bytes_per_step");
+    label(out, width, "ranks", "");
+    fprintf(out, "%s, imbalance %.3g (%.3g at most), %.2g ghosts a particle",
+            partition ? partition : "", member(imbalance, "last"), member(imbalance, "most"),
+            member(s->on_ranks, "ghosts"));
+    if (!isnan(bytes))
+        fprintf(out, "\n%*s%.3g kB in %.0f messages a step, %.0f %% of the time waiting", width + 2,
+                "", 1e-3 * bytes, member(exchange, "messages_per_step"),
+                s->cost.loop > 0.0 ? 100.0 * s->cost.mpi / s->cost.loop : 0.0);
+    fputs("\n", out);
+}
+
 void summary_table(const struct summary *s, FILE *out)
 {
     const int width = label_width(s);
@@ -211,6 +230,8 @@ void summary_table(const struct summary *s, FILE *out)
     print_cost(s, out, width);
     if (s->device)
         print_device(s, out, width);
+    if (s->on_ranks)
+        print_ranks(s, out, width);
     if (s->picture) {
         label(out, width, "picture", "");
         fprintf(out, "%s\n", s->picture);

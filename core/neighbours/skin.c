@@ -408,6 +408,29 @@ struct skin skin_part(const struct skin *s, size_t first, size_t n)
     return part;
 }
 
+bool skin_places(const struct skin *s, size_t first, size_t n, double *const *x, double *h)
+{
+    const size_t columns = (size_t)s->dim + 1;
+
+    if (s->n == SIZE_MAX || first > s->n || n > s->n - first) {
+        return false;
+    }
+    for (size_t k = 0; k < n; k++) {
+        const struct skin_block *b = &s->block[(first + k) / BLOCK];
+        const double *was;
+
+        if (b->exact == EXACT_NO) {
+            return false;
+        }
+        was = s->exact + b->exact * columns * BLOCK + (first + k) % BLOCK;
+        for (int a = 0; a < s->dim; a++) {
+            x[a][k] = was[(size_t)a * BLOCK];
+        }
+        h[k] = was[(size_t)s->dim * BLOCK];
+    }
+    return true;
+}
+
 /* -- Into a checkpoint and out of it ----------------------------------------------------------- */
 
 static bool skin_fits(const struct skin *s, size_t bytes, size_t codes, size_t exact)

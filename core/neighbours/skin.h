@@ -53,6 +53,8 @@ static inline bool skin_holds(struct skin_change all)
 {
     return 2 * all.moved <= all.room;
 }
+/* The places and h of n particles from `first` on, if nothing of them was rounded: false otherwise. x: [dim]. */
+bool skin_places(const struct skin *s, size_t first, size_t n, double *const *x, double *h);
 /* Into a checkpoint or out of it, as it is. */
 int skin_store(struct skin *s, struct store *store, struct error *e);
 void skin_fini(struct skin *s);

@@ -150,6 +150,11 @@ int particles_gather(struct particles *p, const uint32_t *index, size_t n, struc
 /* Into a checkpoint or out of it, every column as it is held, ghosts included; mirrors are not. Reading, the
  * array has its columns already. */
 int particles_store(struct particles *p, struct store *s, struct error *e);
+/* Out of a checkpoint, of an array that was stored there: its particles [first, first + n) become those from `at` on,
+ * for which there is room. Called for at = 0 before any other, with n = 0 if need be: columns are then held as
+ * they are there. */
+int particles_restore(struct particles *p, struct store *s, size_t at, size_t first, size_t n,
+                      struct error *e);
 /* The column as the ABI hands it over; its mirror likewise, or the column itself if it is held in 4
  * bytes. */
 sph_column particles_column(const struct particles *p, int column);

@@ -65,6 +65,67 @@ static char *names_of(const struct particles *p)
     return names;
 }
 
+/* That the file's columns are the array's. */
+static int names_check(const struct particles *p, struct store *s, struct error *e)
+{
+    char *names = names_of(p), *found = NULL;
+    int status = names ? store_text(s, "columns", &found, e) : error_memory(e, "names", 1);
+    if (!status && (!found || strcmp(names, found) != 0))
+        status = store_broken(s, e, "array \"%s\" has other properties there", p->name);
+    free(names);
+    free(found);
+    return status;
+}
+
+/* A column that is not held as the one there can take nothing of it. */
+static int form_check(const struct particles *p, int column, struct store *s, struct error *e)
+{
+    const struct column *c = &p->column[column];
+    const uint32_t is[4] = {c->type, c->ncomp, (uint32_t)c->size, c->low != NULL};
+    const double held[4] = {c->quantum, c->centre[0], c->centre[1], c->centre[2]};
+    uint32_t form[4];
+    double quanta[4];
+    if (store_block(s, "form", STORE_U32, form, 4, e) ||
+        store_block(s, "quanta", STORE_F64, quanta, 4, e))
+        return -1;
+    return memcmp(form, is, sizeof is) == 0 &&
+                   (form[3] == 0 || c->quantum <= 0.0 || memcmp(quanta, held, sizeof held) == 0) &&
+                   (quanta[0] > 0.0) == (c->quantum > 0.0)
+               ? 0
+               : store_broken(s, e, "%s.%s is held in more than one way", p->name, c->name);
+}
+
+static int column_restore(struct particles *p, int column, struct store *s, size_t at, size_t first,
+                          size_t n, struct error *e)
+{
+    if (at == 0 ? form_store(p, column, s, e) : form_check(p, column, s, e))
+        return -1;
+    const struct column *c = &p->column[column];
+    for (uint32_t k = 0; k < c->ncomp; k++) {
+        char name[32];
+        const size_t to = k * c->plane + at;
+        snprintf(name, sizeof name, "data%u", k);
+        if (store_piece(s, name, type_of(c), (char *)c->data + to * c->size, first, n, e))
+            return -1;
+        snprintf(name, sizeof name, "low%u", k);
+        if (c->low && store_piece(s, name, STORE_F32, c->low + to, first, n, e))
+            return -1;
+    }
+    return 0;
+}
+
+int particles_restore(struct particles *p, struct store *s, size_t at, size_t first, size_t n,
+                      struct error *e)
+{
+    int status = names_check(p, s, e);
+    for (size_t k = 0; !status && k < p->n_column; k++) {
+        store_enter(s, "column", k);
+        status = column_restore(p, (int)k, s, at, first, n, e);
+        store_leave(s);
+    }
+    return status;
+}
+
 int particles_store(struct particles *p, struct store *s, struct error *e)
 {
     size_t n = p->n, n_ghost = p->n_ghost;

@@ -1,4 +1,5 @@
 /* plan/explain.c -- the plan told: for people as a database tells a query plan, for machines as JSON. */
+#include "domain/ranks.h"
 #include "plan/device_memory.h"
 #include "scene/fill.h"
 #include <math.h>
@@ -199,7 +200,9 @@ static bool told_before(const struct plan *plan, size_t reduction)
 /* Which columns the ghosts need anew, and after which pass. */
 static void print_exchanges(const struct plan *plan, FILE *out)
 {
-    bool sides = false;
+    int rank, ranks;
+    ranks_count(&rank, &ranks);
+    bool sides = ranks > 1;
     for (int c = 0; c < plan->dim; c++)
         for (int k = 0; k < 2; k++)
             sides = sides || (plan->scene->box.bounded && plan->scene->box.side[c][k] != SIDE_OPEN);

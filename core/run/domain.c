@@ -45,6 +45,8 @@ static int cut_first(struct run *r, struct error *e)
     size_t n = 0, k = 0;
     for (size_t a = 0; a < plan->n_array; a++)
         n += plan->array[a].p.n;
+    if (n == 0) /* they come out of a checkpoint */
+        return 0;
     double *x = malloc((3 * (n / ranks + 1)) * sizeof *x);
     float *weight = malloc((n / ranks + 1) * sizeof *weight);
     if (ranks_agree(x && weight ? 0 : error_memory(e, "the domain", n * sizeof *x), e)) {
@@ -102,7 +104,9 @@ int run_domain_open(struct run *r, struct error *e)
         wire_close(wire);
         return status;
     }
-    if (ranks_agree(shared(&r->domain, r->plan, e), e)) {
+    const int status = ranks_agree(shared(&r->domain, r->plan, e), e);
+    if (status) {
+        run_domain_close(r);
         wire_close(wire);
         return -1;
     }
@@ -205,22 +209,28 @@ static int room_for(struct run_domain *d, size_t n, struct error *e)
     return d->capacity ? 0 : error_memory(e, "the domain", capacity * sizeof *d->place);
 }
 
-/* Every particle's weight, and how even the shares are. */
-static int weigh_all(struct run *r, struct error *e)
+int run_domain_cost(struct run *r, double *cost, struct error *e)
 {
     struct run_domain *d = r->domain;
     const struct plan *plan = r->plan;
     size_t n = 0, at = 0;
-    double sum = 0.0;
     for (size_t a = 0; a < plan->n_array; a++)
         n += plan->array[a].p.n;
     if (room_for(d, n, e))
         return -1;
+    *cost = 0.0;
     for (size_t a = 0; a < plan->n_array; a++) {
-        sum += weigh(r, a, d->weight + at);
+        *cost += weigh(r, a, d->weight + at);
         at += plan->array[a].p.n;
     }
-    return find_imbalance(r, sum, e);
+    return 0;
+}
+
+/* Every particle's weight, and how even the shares are. */
+static int weigh_all(struct run *r, struct error *e)
+{
+    double sum;
+    return run_domain_cost(r, &sum, e) || find_imbalance(r, sum, e) ? -1 : 0;
 }
 
 int run_domain_uneven(struct run *r, bool *uneven, struct error *e)
@@ -234,26 +244,68 @@ int run_domain_uneven(struct run *r, bool *uneven, struct error *e)
     return 0;
 }
 
+/* How even the shares will be once the n particles at these places, whose weights are known, have gone to where they
+ * belong: those that have crossed a cut since are not yet there, and count for whom they come to. */
+static int foresee_imbalance(struct run *r, double *const *place, size_t n, struct error *e)
+{
+    struct run_domain *d = r->domain;
+    const size_t ranks = (size_t)wire_size(d->wire);
+    double *share = calloc(ranks, sizeof *share), most = 0.0, sum = 0.0;
+    uint32_t *op = calloc(ranks, sizeof *op);
+    int status = share && op ? 0 : error_memory(e, "the domain", ranks * sizeof *share);
+    for (size_t i = 0; !status && i < n; i++) {
+        const double x[3] = {place[0][i], place[1][i], place[2][i]};
+        share[partition_owner(d->partition, x)] += (double)d->weight[i];
+    }
+    for (size_t k = 0; !status && k < ranks; k++)
+        op[k] = SPH_REDUCE_SUM;
+    if (!status)
+        status = run_share_numbers(r, share, op, ranks, e);
+    for (size_t k = 0; !status && k < ranks; k++) {
+        most = share[k] > most ? share[k] : most;
+        sum += share[k];
+    }
+    if (!status)
+        d->imbalance = sum > 0.0 ? most * (double)ranks / sum : 1.0;
+    free(share);
+    free(op);
+    return status;
+}
+
 /* Cuts anew if the shares have come to differ too much. */
 static int balance(struct run *r, struct error *e)
 {
     struct run_domain *d = r->domain;
     const struct plan *plan = r->plan;
-    if (weigh_all(r, e))
-        return -1;
-    if (!r->lists_made || !(d->imbalance > plan->scene->ranks.imbalance))
-        return 0;
     size_t at = 0;
+    double sum;
+    if (run_domain_cost(r, &sum, e))
+        return -1;
+    if (!r->lists_made)
+        return 0;
     double *const place[3] = {d->place, d->place + d->capacity, d->place + 2 * d->capacity};
     for (size_t a = 0; a < plan->n_array; a++)
         for (size_t i = 0; i < plan->array[a].p.n; i++, at++) {
-            double x[3];
+            double x[3] = {0.0, 0.0, 0.0};
             place_of(&plan->array[a], plan->dim, i, x);
-            for (int c = 0; c < plan->dim; c++)
+            for (int c = 0; c < 3; c++)
                 place[c][at] = x[c];
         }
+    if (foresee_imbalance(r, place, at, e))
+        return -1;
+    if (!(d->imbalance > plan->scene->ranks.imbalance))
+        return 0;
     d->cuts++;
     return partition_cut(d->partition, (const double *const *)place, d->weight, at, e);
+}
+
+/* Adds what was sent since then. */
+static void add_sent(const struct run_domain *d, struct halo_sent *to,
+                     const struct wire_count *since)
+{
+    const struct wire_count now = wire_count(d->wire);
+    to->messages += now.messages - since->messages;
+    to->bytes += now.bytes - since->bytes;
 }
 
 int run_domain_move(struct run *r, struct error *e)
@@ -261,6 +313,7 @@ int run_domain_move(struct run *r, struct error *e)
     struct run_domain *d = r->domain;
     if (!d)
         return 0;
+    const struct wire_count before = wire_count(d->wire);
     if (balance(r, e))
         return -1;
     for (size_t a = 0; a < r->plan->n_array; a++) {
@@ -277,6 +330,7 @@ int run_domain_move(struct run *r, struct error *e)
             return -1;
         d->moved += sent;
     }
+    add_sent(d, &d->for_moves, &before);
     return 0;
 }
 
@@ -299,6 +353,7 @@ int run_domain_meet(struct run *r, struct error *e)
                                  .n_want = d->n_want,
                                  /* Lists of other frames are made later: there is room to move. */
                                  .factor = 1.0 + (plan->n_frame > 1 ? 2.0 : 1.0) * r->skin};
+    d->halos++;
     return halo_make(&d->halo, &job, r->ghosts, e);
 }
 
@@ -307,6 +362,7 @@ int run_domain_ghosts(struct run *r, struct error *e)
     struct run_domain *d = r->domain;
     const struct plan *plan = r->plan;
     const size_t n = plan->n_array;
+    const struct wire_count before = wire_count(d->wire);
     if (run_domain_meet(r, e))
         return -1;
     for (size_t a = 0; a < n; a++) {
@@ -320,7 +376,10 @@ int run_domain_ghosts(struct run *r, struct error *e)
                 return -1;
         }
     }
-    return run_domain_begin(r, e) || run_domain_finish(r, e) ? -1 : 0;
+    if (run_domain_begin(r, e) || run_domain_finish(r, e))
+        return -1;
+    add_sent(d, &d->for_ghosts, &before);
+    return 0;
 }
 
 int run_domain_ask(struct run *r, size_t array, int column, struct error *e)

@@ -26,7 +26,10 @@ struct run_domain {
     size_t capacity;
     double imbalance; /* of the pairs, when particles were last sorted */
     uint64_t moved,
-        cuts; /* particles that have left this rank; how often the domain was cut anew */
+        cuts;       /* particles that have left this rank; how often the domain was cut anew */
+    uint64_t halos; /* how often ghosts were made anew */
+    struct halo_sent for_ghosts,
+        for_moves; /* of what was sent: while that was done; to move particles */
 };
 
 static inline bool run_shared(const struct run *r)
@@ -47,6 +50,9 @@ int run_domain_move(struct run *r, struct error *e);
 int run_domain_ghosts(struct run *r, struct error *e);
 /* The first half of it, of what the host's columns hold: who needs whom. */
 int run_domain_meet(struct run *r, struct error *e);
+/* What this rank's share costs, in pairs: those of its lists for each sweep of an evaluation that walks them, and
+ * something for each particle. */
+int run_domain_cost(struct run *r, double *cost, struct error *e);
 /* Columns that ghosts need anew, of any arrays: asked for one by one, then exchanged at once. */
 int run_domain_ask(struct run *r, size_t array, int column, struct error *e);
 int run_domain_begin(struct run *r, struct error *e);

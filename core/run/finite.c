@@ -4,7 +4,6 @@
  * columns, no more. Of several ranks the one whose particle it is speaks: of a pass at once, before others hear
  * of its values; of rates, which others' may have spoilt already, once it is clear whose were first. */
 #include "base/clones.h"
-#include "run/domain.h"
 #include "run/foremost.h"
 #include "run/watch.h"
 #include <float.h>
@@ -210,17 +209,15 @@ static bool find_rate(const struct run *r, struct bad *out, size_t *order)
     return false;
 }
 
-/* The search is for those who have seen one: closing.c and advance.c, which look at all that is written. */
+/* The search is for those who have seen one: closing.c and advance.c, which look at all that is written. By now all
+ * ranks know whether anybody has. */
 int finite_rates(struct run *r, struct error *e)
 {
-    uint64_t suspect = r->suspect;
     struct bad b;
     size_t order;
-    if (run_share_count(r, &suspect, e))
-        return -1;
-    r->suspect = false;
-    if (!suspect)
+    if (!r->suspect)
         return 0;
+    r->suspect = false;
     const bool any = find_rate(r, &b, &order);
     struct foremost f = found(&b, any, order);
     bool none = any && isnan(b.value);

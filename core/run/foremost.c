@@ -25,8 +25,10 @@ int foremost_find(const struct run *r, struct foremost *f, void *with, size_t by
     memcpy(own, f, sizeof *f);
     if (bytes)
         memcpy(own + sizeof *f, with, bytes);
-    if (wire_gather(r->domain->wire, own, each, all, e))
-        return -1; /* somebody may still write to it */
+    if (wire_gather(r->domain->wire, own, each, all, e)) {
+        free(all);
+        return -1;
+    }
     size_t best = 0;
     for (size_t k = 0; k < ranks; k++) {
         struct foremost here;

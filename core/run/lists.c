@@ -3,6 +3,7 @@
 #include "run/device.h"
 #include "run/domain.h"
 #include "run/frames.h"
+#include "run/run_store.h"
 #include "run/watch.h"
 
 #include "neighbours/range.h"
@@ -171,8 +172,9 @@ static int holds(const struct run *r, size_t frame, bool *yes, struct error *e)
 static int keep_places(struct run *r, size_t frame, struct error *e)
 {
     const size_t n = clouds_of(r, frame, r->cloud);
+    /* On several ranks a checkpoint holds the places and no lists: these are made from them again. */
     for (size_t k = 0; k < n; k++)
-        r->kept[frame * r->plan->n_array + k].exactly = r->plan->strict;
+        r->kept[frame * r->plan->n_array + k].exactly = r->plan->strict || r->domain;
     for (size_t k = 0; !r->plan->frame[frame].frozen && k < n; k++)
         if (skin_keep(&r->kept[frame * r->plan->n_array + k], &r->cloud[k], r->threads, e))
             return -1;
@@ -266,12 +268,13 @@ static int make_ghosts(struct run *r, struct error *e)
     double margin;
     if (find_margin(r, &margin, e))
         return -1;
-    for (size_t a = 0; r->domain && a < r->plan->n_array; a++)
+    /* What else fails does not tell of h. */
+    for (size_t a = 0; a < r->plan->n_array; a++)
         for (int c = 0; c < r->plan->dim; c++)
             if (sides_check_width(&r->plan->scene->box, c, margin, r->plan->array[a].p.name, e))
                 return watch_too_wide(r, e);
     if (r->domain ? run_domain_ghosts(r, e) : make_images(r, margin, e))
-        return watch_no_ghosts(r, e);
+        return -1;
     for (size_t a = 0; a < r->plan->n_array; a++) {
         for (size_t c = 0; c < r->plan->array[a].p.n_column; c++)
             run_changed(r, a, (int)c);
@@ -399,8 +402,6 @@ static int renew(struct run *r, bool within, bool sort, struct error *e)
     if (!status)
         status = make_lists(r, sort, e);
     forget_h(r);
-    if (!status)
-        status = narrow_places(r, e);
     r->lists_made = !status;
     r->cost.list_builds++;
     return status;
@@ -425,9 +426,99 @@ int run_lists(struct run *r, bool within, struct error *e)
             status = run_domain_uneven(r, &uneven, e);
         if (!status && uneven)
             status = renew(r, within, sort, e);
+        if (!status)
+            status = narrow_places(r, e); /* once: it rounds */
+        r->lists_made = !status;
     }
     r->lists_suspect = false;
     r->cost.neighbour += omp_get_wtime() - begin;
+    return status;
+}
+
+/* -- As they were ------------------------------------------------------------------------------- */
+
+/* A column's real particles as they are held. */
+struct held {
+    char *data;
+    float *low;
+    struct column form;
+};
+
+static int hold(struct held *k, const struct particles *p, int column, struct error *e)
+{
+    const struct column *c = &p->column[column];
+    *k = (struct held){malloc(c->ncomp * p->n * c->size + 1),
+                       malloc(c->ncomp * p->n * sizeof(float) + 1), *c};
+    if (!k->data || !k->low)
+        return error_memory(e, "particles", c->ncomp * p->n * c->size);
+    for (uint32_t q = 0; q < c->ncomp; q++) {
+        memcpy(k->data + q * p->n * c->size, (const char *)c->data + q * c->plane * c->size,
+               p->n * c->size);
+        if (c->low)
+            memcpy(k->low + q * p->n, c->low + q * c->plane, p->n * sizeof(float));
+    }
+    return 0;
+}
+
+/* The column is held as it was. */
+static void give_back(struct held *k, struct particles *p, int column)
+{
+    struct column *c = &p->column[column];
+    c->quantum = k->form.quantum;
+    memcpy(c->centre, k->form.centre, sizeof c->centre);
+    for (uint32_t q = 0; k->data && k->low && q < c->ncomp; q++) {
+        memcpy((char *)c->data + q * c->plane * c->size, k->data + q * p->n * c->size,
+               p->n * c->size);
+        if (c->low)
+            memcpy(c->low + q * c->plane, k->low + q * p->n, p->n * sizeof(float));
+    }
+}
+
+static void stand(struct plan_array *a, const struct particles *was)
+{
+    const struct column *x = &a->p.column[a->position], *h = &a->p.column[a->smoothing];
+    for (size_t i = 0; i < a->p.n; i++) {
+        for (uint32_t c = 0; c < x->ncomp; c++)
+            column_set(x, c, i, column_get(&was->column[0], c, i));
+        column_set(h, 0, i, column_get(&was->column[1], 0, i));
+    }
+}
+
+int run_lists_again(struct run *r, const struct particles *was, bool counted, struct error *e)
+{
+    const size_t n = r->plan->n_array;
+    const double quantum = r->quantum, centre[3] = {r->centre[0], r->centre[1], r->centre[2]};
+    struct held *held = calloc(2 * n + 1, sizeof *held);
+    int status = held ? 0 : error_memory(e, "particles", n * sizeof *held);
+    for (size_t a = 0; !status && a < n; a++) {
+        struct plan_array *pa = &r->plan->array[a];
+        if (hold(&held[2 * a], &pa->p, pa->position, e) ||
+            hold(&held[2 * a + 1], &pa->p, pa->smoothing, e))
+            status = -1;
+    }
+    if (!status)
+        status = widen_places(r, e);
+    for (size_t a = 0; !status && a < n; a++)
+        if (frame_has(r, 0, a))
+            stand(&r->plan->array[a], &was[a]);
+    if (!status)
+        status = make_lists(r, counted, e) || narrow_places(r, e) ? -1 : 0;
+    forget_h(r);
+    for (size_t a = 0; !status && a < n; a++) {
+        struct plan_array *pa = &r->plan->array[a];
+        give_back(&held[2 * a], &pa->p, pa->position);
+        give_back(&held[2 * a + 1], &pa->p, pa->smoothing);
+        run_changed(r, a, pa->position);
+        run_changed(r, a, pa->smoothing);
+    }
+    r->quantum = quantum; /* the same again */
+    memcpy(r->centre, centre, sizeof centre);
+    r->lists_made = !status;
+    for (size_t k = 0; held && k < 2 * n; k++) {
+        free(held[k].data);
+        free(held[k].low);
+    }
+    free(held);
     return status;
 }
 

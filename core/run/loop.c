@@ -114,6 +114,7 @@ static int one_step(struct loop *l, struct error *e)
     if (choose_dt(l, &dt, e))
         return -1;
     r->dt = dt;
+    loop_ranks_step_begins(&l->ranks);
     double goal = target(l);
     bool reaches = !(r->time + dt < goal);
     r->look = is_logged(l, r->step + 1, r->time + dt);
@@ -123,6 +124,7 @@ static int one_step(struct loop *l, struct error *e)
     if (reaches)
         r->time = goal; /* not a rounding beside it */
     r->step++;
+    loop_ranks_step_ends(&l->ranks);
     r->cost.particle_updates += particles_total(r->plan);
     return 0;
 }
@@ -143,7 +145,8 @@ static int after_step(struct loop *l, struct error *e)
     if (!isfinite(totals_energy(&l->last)))
         return watch_fail(r, &(struct sign){.cause = WATCH_NOT_FINITE}, e,
                           "the energy is no longer a number");
-    if (logged && (watch_energy(r, &l->first, &l->last, e) || loop_log(l, e)))
+    if (logged &&
+        (watch_energy(r, &l->first, &l->last, e) || loop_log(l, e) || loop_ranks_row(&l->ranks, e)))
         return -1;
     if (!last && measures_due(&l->measures) &&
         (run_look(r, e) || measures_take(&l->measures, MEASURES_ON_THE_WAY, e)))
@@ -174,7 +177,8 @@ static int start(struct loop *l, struct error *e)
     l->ended = finished(l);
     if (run_fetch(r, e))
         return -1;
-    return loop_log(l, e) || loop_snapshot(l, e) || measures_take(&l->measures, MEASURES_START, e)
+    return loop_log(l, e) || loop_ranks_row(&l->ranks, e) || loop_snapshot(l, e) ||
+                   measures_take(&l->measures, MEASURES_START, e)
                ? -1
                : 0;
 }
@@ -182,6 +186,13 @@ static int start(struct loop *l, struct error *e)
 double loop_seconds(const struct loop *l)
 {
     return omp_get_wtime() - l->loop_begun - (l->run.cost.io - l->loop_io);
+}
+
+/* What all ranks have to tell. */
+static int gather(struct loop *l, struct error *e)
+{
+    const struct summary_memory held = loop_memory(l);
+    return loop_ranks_gather(&l->ranks, &held, e);
 }
 
 /* A checkpoint was taken before its step was looked at. */
@@ -209,7 +220,7 @@ static int steps(struct loop *l, struct error *e)
     if (measures_take(&l->measures, MEASURES_END, e))
         return -1;
     r->cost.loop = loop_seconds(l);
-    return loop_snapshot(l, e);
+    return loop_snapshot(l, e) || gather(l, e) ? -1 : 0;
 }
 
 static int loop_begin(struct loop *l, struct plan *plan, struct error *e)
@@ -227,7 +238,7 @@ static int loop_begin(struct loop *l, struct plan *plan, struct error *e)
     l->refused =
         run_init(&l->run, plan, l->options->threads, l->options->path, l->options->audit, e) ||
         (l->options->resume    ? loop_resume(l, e)
-         : run_speaks(&l->run) ? output_clear(l->out, e)
+         : run_speaks(&l->run) ? earlier_clear(&l->earlier, l->out, e)
                                : 0);
     if (l->refused)
         return -1;
@@ -241,6 +252,8 @@ static int loop_begin(struct loop *l, struct plan *plan, struct error *e)
     free(path);
     if (!status)
         status = measures_open(&l->measures, &l->run, l->out, l->options->resume != NULL, e);
+    if (!status)
+        status = loop_ranks_open(&l->ranks, &l->run, l->out, l->options->resume != NULL, e);
     return status;
 }
 
@@ -252,6 +265,16 @@ static void tell_device(const struct loop *l, struct error *e)
         return;
     error_prefix(e, "step %llu, t = %g", (unsigned long long)l->run.step, l->run.time);
     if (l->checkpointed != UINT64_MAX)
+        error_set(e, (enum exit_code)e->exit_code,
+                  "%s; the last checkpoint is of step %llu: --resume latest goes on from there",
+                  e->text, (unsigned long long)l->checkpointed);
+}
+
+/* Of several ranks any may fail by itself: what may be gone on from. A run that has gone wrong would do so again. */
+static void tell_checkpoint(const struct loop *l, struct error *e)
+{
+    if (l->run.domain && e->text[0] && l->checkpointed != UINT64_MAX &&
+        !(l->run.watch && l->run.watch->failure.happened) && !strstr(e->text, "--resume"))
         error_set(e, (enum exit_code)e->exit_code,
                   "%s; the last checkpoint is of step %llu: --resume latest goes on from there",
                   e->text, (unsigned long long)l->checkpointed);
@@ -269,7 +292,8 @@ static bool can_keep(struct loop *l)
     run_device_failed(&l->run, &lost);
     double value[5] = {l->refused ? 1.0 : 0.0, step, step, lost ? 1.0 : 0.0, happened ? 1.0 : 0.0};
     struct error ignored = {0};
-    if (run_share_numbers(&l->run, value, op, 5, &ignored) || value[0] > 0.0)
+    if (run_domain_agree(&l->run, run_share_numbers(&l->run, value, op, 5, &ignored), &ignored) ||
+        value[0] > 0.0)
         return false;
     l->apart = value[1] > value[2] || value[3] > 0.0;
     l->worth = value[1] > 0.0 || value[4] > 0.0;
@@ -277,17 +301,21 @@ static bool can_keep(struct loop *l)
 }
 
 /* Keeps the state in which the run failed; its own failures are not worth a second sentence. */
-static void keep_failed(struct loop *l, const struct error *e)
+static void keep_failed(struct loop *l, struct error *e)
 {
     struct error ignored = {0};
+    run_domain_agree(&l->run, watch_share_failure(&l->run, &ignored), &ignored);
+    ignored = (struct error){0};
+    tell_checkpoint(l, e);
     if (l->apart) {
         /* The columns here are of different times. */
     } else if (l->worth) {
         run_domain_agree(&l->run, loop_snapshot(l, &ignored), &ignored);
         ignored = (struct error){0};
-        if (!l->run.domain)
-            loop_checkpoint_failed(l, e->text, &ignored);
+        run_domain_agree(&l->run, loop_checkpoint_failed(l, e->text, &ignored), &ignored);
     }
+    ignored = (struct error){0};
+    run_domain_agree(&l->run, gather(l, &ignored), &ignored);
     ignored = (struct error){0};
     if (run_speaks(&l->run))
         loop_summarise(l, "failed", e->text, &ignored);
@@ -296,12 +324,15 @@ static void keep_failed(struct loop *l, const struct error *e)
 /* What is told at the end. */
 static int tell(struct loop *l, struct error *e)
 {
-    if (log_close(&l->log, e) || measures_close(&l->measures, e))
+    if (log_close(&l->log, e) || measures_close(&l->measures, e) || loop_ranks_close(&l->ranks, e))
         return -1;
     if (!run_speaks(&l->run))
         return 0;
-    return loop_draw(l, e) || loop_summarise(l, was_stopped(l) ? "stopped" : "done", NULL, e) ? -1
-                                                                                              : 0;
+    if (loop_draw(l, e) || loop_summarise(l, was_stopped(l) ? "stopped" : "done", NULL, e))
+        return -1;
+    if (!was_stopped(l))
+        earlier_pass(&l->earlier, l->out, UINT64_MAX);
+    return 0;
 }
 
 int loop_run(struct plan *plan, const struct output *out, const struct loop_options *o,
@@ -318,7 +349,7 @@ int loop_run(struct plan *plan, const struct output *out, const struct loop_opti
     if (!status)
         status = run_domain_agree(&l.run, tell(&l, e), e);
     if (status && l.run.plan && can_keep(&l)) {
-        if (!l.run.domain) /* else it has been told */
+        if (!l.run.domain) /* else its rank has said it */
             tell_device(&l, e);
         keep_failed(&l, e);
     }
@@ -326,6 +357,7 @@ int loop_run(struct plan *plan, const struct output *out, const struct loop_opti
     log_close(&l.log, &ignored);
     measures_close(&l.measures, &ignored);
     measures_free(&l.measures);
+    loop_ranks_free(&l.ranks);
     run_free(&l.run);
     free(l.picture);
     cJSON_free(l.scene_text);

@@ -2,7 +2,10 @@
  * on from one. It is taken right after a step, before anything is settled, logged or written of it, and that
  * is where a loop goes on: so a run with checkpoints, one without, and one that has been resumed are the
  * same to the last bit. */
+#include "run/domain.h"
 #include "run/loop_state.h"
+#include "run/run_store.h"
+#include "run/shared_file.h"
 #include "run/watch.h"
 #include <math.h>
 #include <omp.h>
@@ -35,8 +38,9 @@ static int totals_store(struct totals *t, const char *name, struct store *s, str
 }
 
 /* Moments are counted from the beginning; where the scene now asks for others, from this step on. */
-static void count_anew(struct loop *l, double every, double log_every)
+static void count_anew(struct loop *l)
 {
+    const double every = l->was_every, log_every = l->was_log_every;
     const double now = l->run.time - l->begin;
     const double next = l->scene->output.every, log = l->scene->output.log_every;
     if (isfinite(next) && !(every <= next && every >= next))
@@ -50,8 +54,8 @@ static void count_anew(struct loop *l, double every, double log_every)
         l->run.time = goal;
 }
 
-/* failed: what may be half made is left out. */
-static int loop_store(struct loop *l, bool failed, struct store *s, struct error *e)
+/* What ranks share: of the loop itself. elapsed: of an earlier run, when reading. */
+static int loop_store(struct loop *l, struct store *s, struct error *e)
 {
     double every = l->scene->output.every, log_every = l->scene->output.log_every;
     double elapsed = omp_get_wtime() - l->started;
@@ -70,11 +74,10 @@ static int loop_store(struct loop *l, bool failed, struct store *s, struct error
             ? -1
             : 0;
     store_leave(s);
-    if (!status)
-        status = (failed ? run_store_failed : run_store)(&l->run, s, e);
     if (!status && s->reading) {
         l->started = omp_get_wtime() - elapsed;
-        count_anew(l, every, log_every);
+        l->was_every = every;
+        l->was_log_every = log_every;
     }
     return status;
 }
@@ -94,23 +97,58 @@ static int mark_failed(const struct run *r, const char *reason, struct store *s,
     return status;
 }
 
-/* reason: of a failure, or NULL. */
-static int write_file(struct loop *l, const char *temporary, const char *reason, struct error *e)
+/* The file, what it tells of itself, and what this rank has. reason: of a failure, or NULL: then what may be half
+ * made is left out. */
+static int write_first(struct loop *l, const char *temporary, const char *reason, struct error *e)
 {
+    struct run *r = &l->run;
     struct origin origin;
     struct checkpoint file;
-    if (origin_make(&origin, l->run.plan, l->run.path, l->options->scene_path, e))
+    const size_t ranks = r->domain ? (size_t)wire_size(r->domain->wire) : 1;
+    if (origin_make(&origin, r->plan, r->path, ranks, l->options->scene_path, e))
         return -1;
     int status = checkpoint_create(&file, temporary, e);
     if (!status) {
-        status = (reason && mark_failed(&l->run, reason, &file.store, e)) ||
-                         origin_store(&origin, &file.store, e) ||
-                         loop_store(l, reason != NULL, &file.store, e)
+        struct store *s = &file.store;
+        status = (reason && mark_failed(r, reason, s, e)) || origin_store(&origin, s, e) ||
+                         loop_store(l, s, e) ||
+                         (r->domain ? ranks_store(r, s, reason != NULL, e)
+                          : reason  ? run_store_failed(r, s, e)
+                                    : run_store(r, s, e))
                      ? -1
                      : 0;
         status = checkpoint_finish(&file, status, e);
     }
     origin_free(&origin);
+    return status;
+}
+
+/* What another rank has, in a group of its own. */
+static int write_next(struct loop *l, size_t rank, const char *temporary, bool failed,
+                      struct error *e)
+{
+    struct checkpoint file;
+    if (checkpoint_append(&file, temporary, e))
+        return -1;
+    store_enter(&file.store, "rank", rank);
+    const int status = ranks_store(&l->run, &file.store, failed, e);
+    store_leave(&file.store);
+    return checkpoint_finish(&file, status, e);
+}
+
+/* Ranks write one after the other: so no more than one rank's particles are anywhere at a time, and a rank that
+ * cannot write is known to all before the next begins. */
+static int write_file(struct loop *l, const char *temporary, const char *reason, struct error *e)
+{
+    const struct run_domain *d = l->run.domain;
+    const int ranks = d ? wire_size(d->wire) : 1, me = d ? wire_rank(d->wire) : 0;
+    int status = 0;
+    for (int k = 0; !status && k < ranks; k++) {
+        if (k == me)
+            status = k == 0 ? write_first(l, temporary, reason, e)
+                            : write_next(l, (size_t)k, temporary, reason != NULL, e);
+        status = run_domain_agree(&l->run, status, e);
+    }
     return status;
 }
 
@@ -121,35 +159,31 @@ int loop_checkpoint(struct loop *l, struct error *e)
     if (l->checkpointed == l->run.step)
         return 0;
     output_checkpoint_name(name, sizeof name, (unsigned long long)l->run.step);
-    char *temporary = output_begin(l->out, name);
-    int status = temporary ? run_fetch(&l->run, e) : error_memory(e, "a path", 1);
-    if (!status)
-        status = csv_sync(&l->log.csv, e); /* rows before this step are not written again */
-    if (!status)
-        status = measures_sync(&l->measures, e);
-    if (!status)
-        status = write_file(l, temporary, NULL, e);
-    if (!status)
-        status = output_commit(l->out, temporary, name, e);
+    char *temporary;
+    /* Rows before this step are not written again. */
+    if (run_fetch(&l->run, e) || csv_sync(&l->log.csv, e) || measures_sync(&l->measures, e) ||
+        loop_ranks_sync(&l->ranks, e) || shared_file_begin(&l->run, l->out, name, &temporary, e))
+        return -1;
+    int status = write_file(l, temporary, NULL, e);
+    status = shared_file_end(&l->run, l->out, temporary, name, status, e);
     if (!status) {
         l->checkpointed = l->run.step;
-        checkpoint_prune(l->out, l->scene->output.checkpoint.keep);
+        if (run_speaks(&l->run)) {
+            checkpoint_prune(l->out, l->scene->output.checkpoint.keep);
+            earlier_pass(&l->earlier, l->out, l->run.step);
+        }
     }
-    free(temporary);
     l->run.cost.io += omp_get_wtime() - begin;
     return status;
 }
 
 int loop_checkpoint_failed(struct loop *l, const char *reason, struct error *e)
 {
-    char *temporary = output_begin(l->out, OUTPUT_FAILED);
-    int status = temporary ? 0 : error_memory(e, "a path", 1);
-    if (!status)
-        status = write_file(l, temporary, reason, e);
-    if (!status)
-        status = output_commit(l->out, temporary, OUTPUT_FAILED, e);
-    free(temporary);
-    return status;
+    char *temporary;
+    if (shared_file_begin(&l->run, l->out, OUTPUT_FAILED, &temporary, e))
+        return -1;
+    const int status = write_file(l, temporary, reason, e);
+    return shared_file_end(&l->run, l->out, temporary, OUTPUT_FAILED, status, e);
 }
 
 int loop_checkpoint_if_due(struct loop *l, struct error *e)
@@ -181,19 +215,37 @@ static int check_end(const struct loop *l, struct error *e)
     return 0;
 }
 
+static int read_file(struct loop *l, struct error *e)
+{
+    struct run *r = &l->run;
+    struct resume *from = l->options->resume;
+    struct store *s = &from->file.store;
+    const size_t ranks = (size_t)from->origin.ranks;
+    const int status = resume_check(from, r->plan, r->path, e) || loop_store(l, s, e) ? -1 : 0;
+    if (run_domain_agree(r, status, e) ||
+        (r->domain || ranks > 1 ? ranks_restore(r, s, ranks, e) : run_store(r, s, e)))
+        return -1;
+    count_anew(l);
+    return check_end(l, e);
+}
+
 int loop_resume(struct loop *l, struct error *e)
 {
-    struct resume *from = l->options->resume;
-    if (resume_check(from, l->run.plan, l->run.path, e) ||
-        loop_store(l, false, &from->file.store, e) || check_end(l, e))
+    const struct resume *from = l->options->resume;
+    if (read_file(l, e))
         return -1;
-    const bool here = resume_is_in(from, l->out->dir);
     const double every = l->scene->output.checkpoint.every;
     l->checkpoints = isfinite(every) ? floor((l->run.time - l->begin) / every) : 0.0;
+    uint64_t here = run_speaks(&l->run) && resume_is_in(from, l->out->dir);
+    if (run_share_count(&l->run, &here, e))
+        return -1;
     if (here)
         l->checkpointed = l->run.step;
+    if (!run_speaks(&l->run))
+        return 0;
     if (!here)
-        return output_clear(l->out, e);
+        return earlier_clear(&l->earlier, l->out, e);
+    earlier_find(&l->earlier, l->out);
     /* Whatever stands there of later is made again. */
     char *log = output_path(l->out, "log.csv");
     int status =

@@ -11,6 +11,12 @@
 #include <string.h>
 #include <sys/resource.h>
 
+/* Particles of an array, on all ranks. */
+static uint64_t particles_of(const struct loop *l, size_t array)
+{
+    return l->ranks.of ? (uint64_t)l->ranks.array_n[array] : l->run.plan->array[array].p.n;
+}
+
 /* Particles in the picture: they may all have been removed, and the run is good all the same. */
 static uint64_t particles_drawn(const struct loop *l)
 {
@@ -18,7 +24,7 @@ static uint64_t particles_drawn(const struct loop *l)
     const char *only = l->scene->output.picture.array;
     uint64_t n = 0;
     for (size_t a = 0; a < plan->n_array; a++)
-        n += only && strcmp(only, plan->array[a].p.name) != 0 ? 0 : plan->array[a].p.n;
+        n += only && strcmp(only, plan->array[a].p.name) != 0 ? 0 : particles_of(l, a);
     return n;
 }
 
@@ -66,6 +72,7 @@ struct summary_parts {
     struct summary_watch watch[WATCH_CAUSES], failure;
     size_t n_watch;
     cJSON *plan, *device, *shared; /* of a run on a device, or NULL */
+    cJSON *on_ranks;               /* on several ranks, or NULL */
 };
 
 static void parts_free(struct summary_parts *q)
@@ -77,6 +84,7 @@ static void parts_free(struct summary_parts *q)
     cJSON_Delete(q->plan);
     cJSON_Delete(q->device);
     cJSON_Delete(q->shared);
+    cJSON_Delete(q->on_ranks);
 }
 
 static int parts_make(struct loop *l, struct summary_parts *q, struct error *e)
@@ -87,6 +95,7 @@ static int parts_make(struct loop *l, struct summary_parts *q, struct error *e)
         q->device = run_device_report(&l->run);
         q->shared = run_device_shared(&l->run);
     }
+    q->on_ranks = l->ranks.of ? loop_ranks_json(&l->ranks) : NULL;
     q->name = calloc(plan->n_array + 1, sizeof *q->name);
     q->count = calloc(plan->n_array + 1, sizeof *q->count);
     q->pass = calloc(plan->n_pass + 1, sizeof *q->pass);
@@ -96,11 +105,16 @@ static int parts_make(struct loop *l, struct summary_parts *q, struct error *e)
         return error_memory(e, "the summary", 1);
     for (size_t a = 0; a < plan->n_array; a++) {
         q->name[a] = plan->array[a].p.name;
-        q->count[a] = plan->array[a].p.n;
+        q->count[a] = particles_of(l, a);
     }
-    for (size_t i = 0; i < plan->n_pass; i++)
+    for (size_t i = 0; i < plan->n_pass; i++) {
         q->pass[i] = (struct summary_pass){plan->pass[i].name, plan->pass[i].seconds,
                                            plan->pass[i].pairs, plan->pass[i].sweeps};
+        if (!l->ranks.of)
+            continue;
+        q->pass[i].seconds = l->ranks.pass_s[i] / (double)wire_size(l->run.domain->wire);
+        q->pass[i].pairs = (uint64_t)l->ranks.pass_pairs[i];
+    }
     for (size_t i = 0; i < plan->registry->n_plugin; i++) {
         const struct plugin *p = &plan->registry->plugin[i];
         q->plugin[i] =
@@ -135,28 +149,50 @@ static void watch_make(const struct loop *l, struct summary_parts *q)
         q->failure = watch_of(w->failure.cause, &w->failure, 1);
 }
 
-/* Bytes for a particle, item by item. */
-static struct summary_memory memory_of(const struct loop *l)
+struct summary_memory loop_memory(const struct loop *l)
 {
     const struct plan *plan = l->run.plan;
     const struct run_memory m = run_memory(&l->run);
-    const double n = (double)particles_total(plan);
-    struct summary_memory out = {0};
-    if (!(n > 0.0))
-        return out;
+    struct summary_memory out = {.lists = (double)m.lists,
+                                 .places = (double)m.places,
+                                 .ghosts = (double)m.ghosts,
+                                 .search = (double)m.search};
     for (size_t a = 0; a < plan->n_array; a++) {
         const struct particles *p = &plan->array[a].p;
         for (size_t c = 0; c < p->n_column; c++) {
             const struct column *k = &p->column[c];
-            out.columns += (double)(k->ncomp * (k->size + (k->low ? sizeof(float) : 0)) * p->n) / n;
-            out.mirrors += k->mirror ? (double)(k->ncomp * 4 * p->n) / n : 0.0;
+            out.columns += (double)(k->ncomp * (k->size + (k->low ? sizeof(float) : 0)) * p->n);
+            out.mirrors += k->mirror ? (double)(k->ncomp * 4 * p->n) : 0.0;
         }
     }
-    out.lists = (double)m.lists / n;
-    out.places = (double)m.places / n;
-    out.ghosts = (double)m.ghosts / n;
-    out.search = (double)m.search / n;
     return out;
+}
+
+/* Bytes for a particle, item by item. */
+static struct summary_memory memory_of(const struct loop *l, const struct rank_figures *all)
+{
+    const struct summary_memory m =
+        all ? (struct summary_memory){all->columns_held, all->mirrors_held, all->lists_held,
+                                      all->places_held,  all->ghosts_held,  all->search_held}
+            : loop_memory(l);
+    const double n = (double)(all ? all->particles : particles_total(l->run.plan));
+    return n > 0.0 ? (struct summary_memory){m.columns / n, m.mirrors / n, m.lists / n,
+                                             m.places / n,  m.ghosts / n,  m.search / n}
+                   : (struct summary_memory){0};
+}
+
+/* Counts are sums over the ranks, seconds their means. */
+static void cost_of_ranks(const struct loop_ranks *l, const struct rank_figures *all,
+                          struct summary_cost *cost)
+{
+    const double ranks = (double)wire_size(l->run->domain->wire);
+    cost->neighbour = all->neighbour_s / ranks;
+    cost->integrate = all->integrate_s / ranks;
+    cost->io = all->io_s / ranks;
+    cost->mpi = all->wait_s / ranks;
+    cost->particle_updates = all->updates;
+    cost->pairs = all->pairs;
+    cost->peak_rss = all->rss;
 }
 
 int loop_summarise(struct loop *l, const char *status, const char *reason, struct error *e)
@@ -196,7 +232,8 @@ int loop_summarise(struct loop *l, const char *status, const char *reason, struc
                         .plugin = q.plugin,
                         .n_plugin = r->plan->registry->n_plugin,
                         .threads = r->threads,
-                        .ranks = 1,
+                        .ranks = l->run.domain ? wire_size(l->run.domain->wire) : 1,
+                        .on_ranks = q.on_ranks,
                         .picture = l->picture};
     if (strcmp(status, "failed") != 0)
         measures_summary(&l->measures, &s);
@@ -214,7 +251,10 @@ int loop_summarise(struct loop *l, const char *status, const char *reason, struc
         s.cost.h_sweeps += r->plan->pass[i].max_sweeps ? r->plan->pass[i].sweeps : 0;
     s.cost.peak_rss = (uint64_t)usage.ru_maxrss * 1024u;
     s.cost.sorts = r->cost.sorts;
-    s.cost.memory = memory_of(l);
+    const struct rank_figures all = loop_ranks_sum(&l->ranks);
+    if (l->ranks.of)
+        cost_of_ranks(&l->ranks, &all, &s.cost);
+    s.cost.memory = memory_of(l, l->ranks.of ? &all : NULL);
     s.cost.bytes_per_particle = s.cost.memory.columns + s.cost.memory.mirrors +
                                 s.cost.memory.lists + s.cost.memory.places + s.cost.memory.ghosts;
     int result = summary_write(&s, l->out, e);

@@ -4,7 +4,10 @@
 #define RUN_LOOP_STATE_H
 
 #include "io/log.h"
+#include "io/summary.h"
+#include "run/earlier.h"
 #include "run/loop.h"
+#include "run/loop_ranks.h"
 #include "run/measures.h"
 
 /* A run of the loop. */
@@ -15,13 +18,16 @@ struct loop {
     const struct scene *scene;
     struct log log;
     struct measures measures;
+    struct loop_ranks ranks;
     struct progress progress;
+    struct earlier earlier; /* of this folder */
     struct totals first, last;
     double energy_drift, momentum_drift[3], angular_drift[3];
     double begin, end, started;
     double full; /* the last step's dt before it was cut to end on time */
     uint64_t max_steps, snapshots, next_output;
     double next_log;
+    double was_every, was_log_every; /* output.every and output.log.every of the run that goes on */
     double loop_begun, loop_io; /* what cost.loop is measured from: the clock, and cost.io then */
     bool stopped;               /* some rank has been asked to stop */
     bool apart, worth; /* of a run that failed: there is no state to keep; there is a reason to */
@@ -64,7 +70,9 @@ int loop_checkpoint_if_due(struct loop *l, struct error *e);
  * the output folder holds of later. */
 int loop_resume(struct loop *l, struct error *e);
 
-/* loop_report.c. The picture of the last snapshot, if the scene wants one. */
+/* loop_report.c. Bytes that this rank holds, item by item. */
+struct summary_memory loop_memory(const struct loop *l);
+/* The picture of the last snapshot, if the scene wants one. */
 int loop_draw(struct loop *l, struct error *e);
 /* summary.json, and the table. reason: of a failure, or NULL. */
 int loop_summarise(struct loop *l, const char *status, const char *reason, struct error *e);

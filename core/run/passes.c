@@ -184,6 +184,9 @@ static int sweep(struct run *r, struct pass *p, const struct ranges *ranges, str
         return -1;
     if ((p->shape == SPH_PAIR && run_frame(r, p->frame, e)) || refresh_all(r, p, e))
         return -1;
+    /* What arrives is no doing of the pass. */
+    if (r->audit && run_domain_waits(r) && pass_arrive(r, p, e))
+        return -1;
     audit_begin(r, p);
     int status = run_chunks(r, p, ranges, e);
     if (audit_end(r, p, status ? NULL : e))
@@ -257,31 +260,61 @@ static int reduce_pass(struct run *r, size_t pass, struct error *e)
         const bool done = closing_reduces(p, d) && r->plan->array[d->array].p.n > 0;
         if (!done && run_reduce(r, d, &r->reduced[i], e))
             return -1;
+        if (r->plan->strict)
+            r->reduced[i] += 0.0; /* a zero has no sign: it would be that of whoever came first */
     }
     return 0;
 }
 
-/* Those of all passes of a moment, of all ranks. */
-static int share_reduced(struct run *r, enum moment moment, struct error *e)
+/* Whether all ranks have it as soon as its pass is done, or when those of passes [first, end) of a moment are
+ * shared. */
+static bool waits_to_be_shared(const struct run *r, const struct reduction *d, enum moment moment,
+                               size_t first, size_t end)
+{
+    return d->pass != NO_PASS && d->pass >= first && d->pass < end &&
+           r->plan->pass[d->pass].moment == moment && !reduced_exactly(r->plan, d);
+}
+
+/* A step that stands later in the recipe may ask for what earlier ones came to (reductions.h). */
+static bool may_ask(const struct run *r, enum moment moment, size_t first, size_t pass)
+{
+    const struct pass *p = &r->plan->pass[pass];
+    for (size_t i = 0; r->domain && p->function && i < r->plan->n_reduction; i++) {
+        const struct reduction *d = &r->plan->reduction[i];
+        if (waits_to_be_shared(r, d, moment, first, pass) &&
+            r->plan->pass[d->pass].function != p->function)
+            return true;
+    }
+    return false;
+}
+
+/* Those of passes [first, end) of a moment, of all ranks; behind the last of an evaluation also whether any rate may
+ * be none. */
+static int share_reduced(struct run *r, enum moment moment, size_t first, size_t end,
+                         struct error *e)
 {
     const size_t n = r->plan->n_reduction;
+    const bool last = end == r->plan->n_pass && moment == MOMENT_EVALUATE;
     double *value = malloc((n + 1) * sizeof *value);
     uint32_t *op = malloc((n + 1) * sizeof *op);
     int status = value && op ? 0 : error_memory(e, "reductions", n * sizeof *value);
-    for (int back = 0; !status && back < 2; back++) {
-        size_t k = 0;
-        for (size_t i = 0; i < n; i++) {
-            const struct reduction *d = &r->plan->reduction[i];
-            if (d->pass == NO_PASS || r->plan->pass[d->pass].moment != moment ||
-                reduced_exactly(r->plan, d))
-                continue;
-            if (back)
-                r->reduced[i] = value[k];
-            value[k] = r->reduced[i];
-            op[k++] = d->declared->op;
+    size_t used = 0, k = 0;
+    for (size_t i = 0; !status && i < n; i++)
+        if (waits_to_be_shared(r, &r->plan->reduction[i], moment, first, end)) {
+            value[used] = r->reduced[i];
+            op[used++] = r->plan->reduction[i].declared->op;
         }
-        status = back ? 0 : run_share_numbers(r, value, op, k, e);
+    if (!status && last) {
+        value[used] = r->suspect ? 1.0 : 0.0;
+        op[used] = SPH_REDUCE_MAX;
     }
+    if (!status)
+        status = run_share_numbers(r, value, op, used + last, e);
+    for (size_t i = 0; !status && i < n; i++)
+        if (waits_to_be_shared(r, &r->plan->reduction[i], moment, first, end))
+            r->reduced[i] = value[k++];
+    if (!status && last)
+        r->suspect = value[used] > 0.0;
     free(op);
     free(value);
     return status;
@@ -307,15 +340,21 @@ int run_passes(struct run *r, enum moment moment, struct error *e)
         return -1;
     if (moment != MOMENT_FINISH && run_lists(r, false, e))
         return -1;
+    size_t shared = 0;
     for (size_t i = 0; i < r->plan->n_pass; i++) {
         if (r->plan->pass[i].moment != moment)
             continue;
+        if (may_ask(r, moment, shared, i)) {
+            if (share_reduced(r, moment, shared, i, e))
+                return -1;
+            shared = i;
+        }
         if (run_pass(r, &r->plan->pass[i], e))
             return -1;
         if (reduce_pass(r, i, e))
             return -1;
     }
-    if (r->domain && share_reduced(r, moment, e))
+    if (r->domain && share_reduced(r, moment, shared, r->plan->n_pass, e))
         return -1;
     if (moment != MOMENT_EVALUATE)
         return 0;

@@ -1,7 +1,9 @@
 /* run/population.c -- particles that functions remove and create, done once at the end of a step: what
  * they wrote in int32 properties is carried out array by array, new particles in the order of their
- * parents' ids, so that a run repeats itself. */
+ * parents' ids, so that a run repeats itself. On several ranks that order is over all of them: each makes the copies
+ * of its own particles, under the ids that they would have on one rank. */
 #include "run/device.h"
+#include "run/domain.h"
 #include <stdlib.h>
 #include <string.h>
 
@@ -45,6 +47,102 @@ static int order_copies(struct change *c, const int64_t *id, struct error *e)
     return 0;
 }
 
+/* -- New ids over all ranks -------- */
+
+#define PIECE 4096 /* parents that ranks tell each other of at a time */
+
+/* A parent's copies of one rank; n 0: none. */
+struct brood {
+    int64_t id;
+    uint64_t n;
+};
+
+/* This rank's parents by id; before[k]: copies of others' parents between the one before and k. */
+struct broods {
+    struct brood *brood;
+    uint64_t *before;
+    size_t n;
+};
+
+static void broods_free(struct broods *b)
+{
+    free(b->brood);
+    free(b->before);
+}
+
+static int broods_make(struct broods *b, const struct change *c, const int64_t *id, struct error *e)
+{
+    const size_t n = c->n - c->n_kept;
+    *b = (struct broods){.brood = calloc(n + PIECE, sizeof *b->brood),
+                         .before = calloc(n + 1, sizeof *b->before)};
+    if (!b->brood || !b->before)
+        return error_memory(e, "new particles", n * sizeof *b->brood);
+    for (size_t k = 0; k < n; k++) {
+        const uint32_t i = c->index[c->n_kept + k];
+        if (k == 0 || i != c->index[c->n_kept + k - 1])
+            b->brood[b->n++].id = id[i];
+        b->brood[b->n - 1].n++;
+    }
+    return 0;
+}
+
+/* Others' copies stand before those of all parents with larger ids. */
+static void stand_before(struct broods *b, const struct brood *other)
+{
+    size_t low = 0, high = b->n;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (b->brood[middle].id < other->id)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    b->before[low] += other->n;
+}
+
+/* All ranks' parents, a piece of each rank's at a time. */
+static int hear_others(const struct run *r, struct broods *b, struct error *e)
+{
+    const size_t ranks = (size_t)wire_size(r->domain->wire),
+                 me = (size_t)wire_rank(r->domain->wire);
+    static const uint32_t op = SPH_REDUCE_MAX;
+    double most = (double)b->n;
+    if (run_share_numbers(r, &most, &op, 1, e))
+        return -1;
+    struct brood *all = malloc(ranks * PIECE * sizeof *all), *own = calloc(PIECE, sizeof *own);
+    int status = all && own ? 0 : error_memory(e, "new particles", ranks * PIECE * sizeof *all);
+    for (size_t first = 0; !status && (double)first < most; first += PIECE) {
+        for (size_t k = 0; k < PIECE; k++)
+            own[k] = first + k < b->n ? b->brood[first + k] : (struct brood){0};
+        status = wire_gather(r->domain->wire, own, PIECE * sizeof *own, all, e);
+        for (size_t k = 0; !status && k < ranks * PIECE; k++)
+            if (k / PIECE != me && all[k].n)
+                stand_before(b, &all[k]);
+    }
+    free(all);
+    free(own);
+    return status;
+}
+
+/* The id of each of this rank's copies, in their order, and the next that is free. */
+static int number(struct run *r, const struct change *c, const int64_t *id, int64_t *born,
+                  struct error *e)
+{
+    struct broods b;
+    int status = broods_make(&b, c, id, e);
+    if (!status && r->domain)
+        status = hear_others(r, &b, e);
+    for (size_t k = 0; !status && k < b.n; k++) {
+        r->plan->next_id += (int64_t)b.before[k];
+        for (uint64_t q = 0; q < b.brood[k].n; q++)
+            *born++ = r->plan->next_id++;
+    }
+    if (!status)
+        r->plan->next_id += (int64_t)b.before[b.n];
+    broods_free(&b);
+    return status;
+}
+
 /* The survivors, then the copies, `create` wanted. */
 static int survey(struct change *c, const struct particles *p, const sph_population *d,
                   struct error *e)
@@ -74,13 +172,13 @@ static int survey(struct change *c, const struct particles *p, const sph_populat
 }
 
 /* Ids for life, and 1, 2, ... among the siblings in `create`. */
-static void number(struct plan *plan, struct plan_array *a, const struct change *c,
-                   const sph_population *d)
+static void name_copies(struct plan_array *a, const struct change *c, const int64_t *born,
+                        const sph_population *d)
 {
     int64_t *id = a->p.column[a->id].data;
     int32_t *sibling = a->p.column[particles_find(&a->p, d->create)].data;
     for (size_t i = c->n_kept; i < c->n; i++) {
-        id[i] = plan->next_id++;
+        id[i] = born[i - c->n_kept];
         sibling[i] = i > c->n_kept && c->index[i] == c->index[i - 1] ? sibling[i - 1] + 1 : 1;
     }
 }
@@ -116,28 +214,45 @@ static void reset(struct particles *p, const char *name)
         memset(p->column[particles_find(p, name)].data, 0, p->n * sizeof(int32_t));
 }
 
+static int carry_out(struct run *r, const struct pass *p, const struct change *c,
+                     const sph_population *d, struct error *e)
+{
+    struct plan_array *a = &r->plan->array[p->dst.array];
+    const size_t n = c->n - c->n_kept;
+    int64_t *born = malloc((n + 1) * sizeof *born);
+    int status = born ? 0 : error_memory(e, "new particles", n * sizeof *born);
+    if (!status && d->create)
+        status = number(r, c, a->p.column[a->id].data, born, e);
+    if (!status)
+        status = particles_gather(&a->p, c->index, c->n, e);
+    if (!status && n > 0) {
+        name_copies(a, c, born, d);
+        status = d->born ? call_born(r, p, c, d, e) : 0;
+    }
+    free(born);
+    r->cost.created += n;
+    r->lists_made = false;
+    r->lists_suspect = r->suspect = true;
+    memset(r->frozen, false, r->plan->n_frame);
+    if (!status) {
+        reset(&a->p, d->remove);
+        reset(&a->p, d->create);
+    }
+    return status;
+}
+
 static int apply(struct run *r, const struct pass *p, const sph_population *d, struct error *e)
 {
     struct plan_array *a = &r->plan->array[p->dst.array];
     struct change c = {0};
-    if (survey(&c, &a->p, d, e) || order_copies(&c, a->p.column[a->id].data, e))
+    if (survey(&c, &a->p, d, e) || order_copies(&c, a->p.column[a->id].data, e)) {
+        free(c.index);
         return error_prefix(e, "%s at step %llu", p->name, (unsigned long long)r->step);
-    int status = 0;
-    if (c.n != a->p.n || c.n_kept != c.n) {
-        status = particles_gather(&a->p, c.index, c.n, e);
-        if (!status && c.n > c.n_kept) {
-            number(r->plan, a, &c, d);
-            status = d->born ? call_born(r, p, &c, d, e) : 0;
-        }
-        r->cost.created += c.n - c.n_kept;
-        r->lists_made = false;
-        r->lists_suspect = r->suspect = true;
-        memset(r->frozen, false, r->plan->n_frame);
-        if (!status) {
-            reset(&a->p, d->remove);
-            reset(&a->p, d->create);
-        }
     }
+    uint64_t changes = c.n != a->p.n || c.n_kept != c.n;
+    int status = run_share_count(r, &changes, e);
+    if (!status && changes)
+        status = carry_out(r, p, &c, d, e);
     free(c.index);
     return status;
 }
@@ -176,10 +291,17 @@ static int find_wanted(struct run *r, bool *any, struct error *e)
 int run_population(struct run *r, struct error *e)
 {
     const bool made = r->lists_made;
-    bool any;
+    bool any, ever = false;
+    for (size_t i = 0; i < r->plan->n_pass; i++)
+        ever = ever || is_wanted(&r->plan->pass[i]);
+    if (!ever)
+        return 0;
     if (find_wanted(r, &any, e))
         return -1;
-    if (!any)
+    uint64_t all = any;
+    if (run_share_count(r, &all, e))
+        return -1;
+    if (!all)
         return 0;
     if (r->device && run_fetch(r, e))
         return -1;

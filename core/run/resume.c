@@ -4,6 +4,8 @@
 #include "run/resume.h"
 
 #include "base/text.h"
+#include "domain/ranks.h"
+#include "domain/wire.h"
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -48,11 +50,11 @@ static const char *processor(void)
 #endif
 }
 
-int origin_make(struct origin *o, const struct plan *plan, uint32_t path, const char *scene_path,
-                struct error *e)
+int origin_make(struct origin *o, const struct plan *plan, uint32_t path, uint64_t ranks,
+                const char *scene_path, struct error *e)
 {
     const struct document *d = plan->scene->doc;
-    *o = (struct origin){.path = path};
+    *o = (struct origin){.path = path, .ranks = ranks, .strict = plan->strict};
     o->version = strdup(PACKAGE_VERSION);
     o->scene = strdup(d->text);
     o->scene_path = realpath(scene_path, NULL);
@@ -82,10 +84,11 @@ int origin_store(struct origin *o, struct store *s, struct error *e)
         store_text(s, "scene_path", &o->scene_path, e) ||
         store_text(s, "plugins", &o->plugins, e) || store_text(s, "precision", &o->precision, e) ||
         store_text(s, "processor", &o->processor, e) || store_text(s, "device", &o->device, e) ||
-        store_u64(s, "path", &o->path, e) || store_count(s, "n_set", &n, e))
+        store_u64(s, "path", &o->path, e) || store_u64(s, "ranks", &o->ranks, e) ||
+        store_u64(s, "strict", &o->strict, e) || store_count(s, "n_set", &n, e))
         return -1;
     if (!o->version || !o->scene || !o->scene_path || !o->plugins || !o->precision ||
-        !o->processor || !o->device || n > 100000)
+        !o->processor || !o->device || n > 100000 || o->ranks < 1 || o->ranks > INT32_MAX)
         return store_broken(s, e, "it does not tell of its scene");
     if (s->reading)
         o->set = calloc(n + 1, sizeof *o->set);
@@ -141,14 +144,14 @@ static int refuse_failed(struct resume *r, struct error *e)
 
 /* -- Which one ---------------------------------------------------------------------------------- */
 
-/* failed: whether it is refused for being of a failure. */
-static int open_file(struct resume *r, const char *path, bool *failed, struct error *e)
+/* failed: whether it is refused for being of a failure. known: another rank has looked at all of it. */
+static int open_file(struct resume *r, const char *path, bool known, bool *failed, struct error *e)
 {
     *failed = false;
     *r = (struct resume){.path = strdup(path)};
     if (!r->path)
         return error_memory(e, "a path", strlen(path));
-    if (checkpoint_open(&r->file, path, e)) {
+    if ((known ? checkpoint_open_known : checkpoint_open)(&r->file, path, e)) {
         free(r->path);
         *r = (struct resume){0};
         return -1;
@@ -175,7 +178,7 @@ static int open_latest(struct resume *r, const char *dir, bool aloud, struct err
         char *path = text_format("%s/%s", dir, name);
         if (!path) {
             status = error_memory(e, "a path", strlen(dir));
-        } else if (open_file(r, path, &failed, &why) == 0) {
+        } else if (open_file(r, path, false, &failed, &why) == 0) {
             status = 0;
         } else if (aloud && k + 1 < n) {
             fprintf(stderr, "sph: %s; the one before it is taken\n", why.text);
@@ -213,9 +216,48 @@ int resume_open(struct resume *r, const char *what, const char *dir, struct erro
     *r = (struct resume){0};
     if (strcmp(what, "latest") == 0)
         return open_latest(r, dir, true, e);
-    const int status = open_file(r, what, &failed, e);
+    const int status = open_file(r, what, false, &failed, e);
     if (failed)
         name_good(what, e);
+    return status;
+}
+
+/* Rank 0's path, in fresh memory. */
+static int tell_path(struct wire *w, const char *mine, char **path, struct error *e)
+{
+    uint64_t n = mine ? strlen(mine) + 1 : 0;
+    if (wire_tell(w, &n, sizeof n, e))
+        return -1;
+    *path = calloc(n + 1, 1);
+    if (!*path)
+        return error_memory(e, "a path", n);
+    if (mine)
+        memcpy(*path, mine, n);
+    return wire_tell(w, *path, n, e);
+}
+
+int resume_open_together(struct resume *r, const char *what, const char *dir, struct error *e)
+{
+    int rank, size;
+    char *path = NULL;
+    struct wire *w = NULL;
+    bool failed;
+    ranks_count(&rank, &size);
+    *r = (struct resume){0};
+    if (ranks_agree(rank == 0 ? resume_open(r, what, dir, e) : 0, e) || wire_open(&w, e)) {
+        resume_close(r);
+        return -1;
+    }
+    int status = tell_path(w, r->path, &path, e);
+    if (status)
+        wire_alarm(w);
+    else if (rank > 0)
+        status = open_file(r, path, true, &failed, e);
+    status = ranks_agree(status, e);
+    wire_close(w);
+    free(path);
+    if (status)
+        resume_close(r);
     return status;
 }
 
@@ -233,7 +275,7 @@ void resume_close(struct resume *r)
 /* What a run may be given anew as it goes on. */
 static const struct json_skip may_differ[] = {
     {"time", "end"},    {"time", "steps"}, {NULL, "output"}, {NULL, "compare"}, {NULL, "probes"},
-    {NULL, "profiles"}, {NULL, "watch"},   {NULL, "title"},  {NULL, "$schema"}};
+    {NULL, "profiles"}, {NULL, "watch"},   {NULL, "ranks"},  {NULL, "title"},   {NULL, "$schema"}};
 
 static int scenes_differ(const struct resume *r, const struct document *was,
                          const struct document *is, const struct json_difference *d,
@@ -312,7 +354,12 @@ int resume_check(const struct resume *r, const struct plan *plan, uint32_t path,
         return error_set(e, EXIT_USAGE, "%s was made with --path %s, not %s", r->path,
                          o->path < paths ? name[o->path] : "of another kind",
                          path < paths ? name[path] : "another");
-    if (strcmp(o->processor, processor()) != 0)
+    if ((o->strict != 0) != plan->strict)
+        return error_set(e, EXIT_USAGE, "%s was made %s --strict; go on %s it", r->path,
+                         o->strict ? "with" : "without", o->strict ? "with" : "without");
+    int rank, size;
+    ranks_count(&rank, &size);
+    if (strcmp(o->processor, processor()) != 0 && rank == 0)
         fprintf(stderr,
                 "sph: %s was made on a processor with %s, this one has %s: last bits may differ\n",
                 r->path, o->processor, processor());

@@ -13,11 +13,12 @@ struct origin {
     char *scene_path; /* where that was */
     char **set;       /* [n_set] --set, in their order */
     size_t n_set;
-    char *plugins;   /* a line each: name, tab, version */
-    char *precision; /* as the plan had it */
-    char *processor; /* what of its instructions changes last bits */
-    char *device;    /* "cpu" or "opencl" */
-    uint64_t path;   /* how pair loops ran: SPH_PATH_... */
+    char *plugins;          /* a line each: name, tab, version */
+    char *precision;        /* as the plan had it */
+    char *processor;        /* what of its instructions changes last bits */
+    char *device;           /* "cpu" or "opencl" */
+    uint64_t path;          /* how pair loops ran: SPH_PATH_... */
+    uint64_t ranks, strict; /* so many wrote it; the order of sums was strict */
 };
 
 struct resume {
@@ -41,12 +42,14 @@ void resume_failure_free(struct resume_failure *f);
 
 /* Into a checkpoint or out of it. */
 int origin_store(struct origin *o, struct store *s, struct error *e);
-int origin_make(struct origin *o, const struct plan *plan, uint32_t path, const char *scene_path,
-                struct error *e);
+int origin_make(struct origin *o, const struct plan *plan, uint32_t path, uint64_t ranks,
+                const char *scene_path, struct error *e);
 void origin_free(struct origin *o);
 
 /* `what`: a file; or "latest": the newest good one in `dir`, broken ones before it told on stderr. */
 int resume_open(struct resume *r, const char *what, const char *dir, struct error *e);
+/* The same, and all ranks call it: the first looks, and all open what it has found. */
+int resume_open_together(struct resume *r, const char *what, const char *dir, struct error *e);
 /* Nothing on zeros. */
 void resume_close(struct resume *r);
 /* The scene, precision, plugins are such that the run goes on with the same bits. */

@@ -97,9 +97,33 @@ static int room_for(struct run *r, struct plan *plan, int threads, uint32_t path
     return 0;
 }
 
+/* Loops for vectors that hold several destinations sum over sources in the order of the list; "base" holds several
+ * sources, and what it sums first is chance. The plain loop does not. */
+static int keep_order(const struct plan *plan, uint32_t *path, struct error *e)
+{
+    bool in_order = *path != SPH_PATH_BASE, floats = false;
+#if defined(__x86_64__)
+    in_order = in_order && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+#else
+    in_order = false;
+#endif
+    if (!plan->strict || in_order || *path == SPH_PATH_REFERENCE || *path == SPH_PATH_EXTENDED)
+        return 0;
+    for (size_t i = 0; i < plan->n_pass; i++)
+        floats = floats || plan->pass[i].real == SPH_F32;
+    if (floats)
+        return error_set(e, EXIT_USAGE,
+                         "--strict with sums in floats needs a processor with AVX2, or other than "
+                         "--path base; take \"precision\": \"double\"");
+    *path = SPH_PATH_REFERENCE;
+    return 0;
+}
+
 int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool audit,
              struct error *e)
 {
+    if (keep_order(plan, &path, e))
+        return -1;
     /* Until there is a domain nobody would hear an alarm. */
     if (run_domain_agree(r, room_for(r, plan, threads, path, e), e))
         return -1;

@@ -2,6 +2,7 @@
  * ghosts, lists and what they were made from, what the integrator has left to do, plugins' own states. Nothing
  * is settled or made anew for it, since that would change the run. */
 #include "run/device.h"
+#include "run/run_store.h"
 #include "run/watch.h"
 #include <stdlib.h>
 #include <string.h>
@@ -106,6 +107,11 @@ static int costs_store(struct run *r, struct store *s, struct error *e)
     return status;
 }
 
+int run_store_numbers(struct run *r, struct store *s, struct error *e)
+{
+    return numbers_store(r, s, e) || tables_store(r, s, e) || costs_store(r, s, e) ? -1 : 0;
+}
+
 /* -- Particles, lists --------------------------------------------------------------------------- */
 
 static int arrays_store(struct run *r, struct store *s, struct error *e)
@@ -188,7 +194,7 @@ static int exact_store(struct run *r, struct use *u, const char *group, size_t i
     return status;
 }
 
-static int states_store(struct run *r, struct store *s, struct error *e)
+int run_store_states(struct run *r, struct store *s, struct error *e)
 {
     struct plan *plan = r->plan;
     int status = 0;
@@ -213,9 +219,9 @@ int run_store(struct run *r, struct store *s, struct error *e)
 {
     if (r->device && !s->reading)
         run_device_costs(r);
-    return numbers_store(r, s, e) || tables_store(r, s, e) || costs_store(r, s, e) ||
-                   arrays_store(r, s, e) || (r->device ? run_device_store : lists_store)(r, s, e) ||
-                   watch_store(r, s, e) || states_store(r, s, e)
+    return run_store_numbers(r, s, e) || arrays_store(r, s, e) ||
+                   (r->device ? run_device_store : lists_store)(r, s, e) || watch_store(r, s, e) ||
+                   run_store_states(r, s, e)
                ? -1
                : 0;
 }
@@ -224,10 +230,7 @@ int run_store_failed(struct run *r, struct store *s, struct error *e)
 {
     if (r->device && !s->reading)
         run_device_costs(r);
-    int status = numbers_store(r, s, e) || tables_store(r, s, e) || costs_store(r, s, e) ||
-                         (r->watch && watch_store(r, s, e))
-                     ? -1
-                     : 0;
+    int status = run_store_numbers(r, s, e) || (r->watch && watch_store(r, s, e)) ? -1 : 0;
     for (size_t a = 0; !status && a < r->plan->n_array; a++) {
         store_enter(s, "array", a);
         status = particles_store(&r->plan->array[a].p, s, e);

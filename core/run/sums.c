@@ -23,11 +23,8 @@ void sums_close(struct sums *s)
 int sums_share(struct sums *s, const struct run *r, struct error *e)
 {
     if (s->exact) {
-        const int status = run_share_exact(r, s->exact, s->n, e);
-        if (status) { /* somebody may still write to them */
-            s->exact = NULL;
+        if (run_share_exact(r, s->exact, s->n, e))
             return -1;
-        }
         for (size_t k = 0; k < s->n; k++)
             s->value[k] = exact_value(&s->exact[k]);
         return 0;

@@ -79,6 +79,8 @@ int watch_time_step(struct run *r, double dt, double span, struct error *e);
 /* Where totals are written. */
 int watch_energy(struct run *r, const struct totals *first, const struct totals *now,
                  struct error *e);
+/* watch_ranks.c: after a run has failed, all ranks: each knows of the failure, and what is kept of it is sound. */
+int watch_share_failure(struct run *r, struct error *e);
 /* At the end of a step: what was found in it counts. */
 void watch_step(struct run *r);
 
@@ -100,6 +102,9 @@ int watch_fail(const struct run *r, const struct sign *s, struct error *e, const
     __attribute__((format(printf, 4, 5)));
 /* What a failure says of itself but for the sentence. */
 struct failure watch_record(const struct run *r, const struct sign *s);
+/* A sort carries along what is state; the rest would have been made anew by passes that now never run: if there was
+ * one, it becomes NaN. */
+void watch_forget(const struct run *r);
 /* "pass density(fluid)", "the integrator": the text of failure.pass in a sentence. */
 #define WATCH_INTEGRATOR "integrator"
 #define WATCH_SCENE "scene"

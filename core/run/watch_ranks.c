@@ -18,32 +18,50 @@ bool watch_counts_together(const struct run *r, enum watch_cause cause)
 
 /* A failure as ranks can share it. */
 struct record {
-    double x[3];
+    double x[3], time;
     int64_t particle;
-    uint64_t array; /* + 1; 0: none */
+    uint64_t step, cause, array; /* array: + 1; 0: none */
     char pass[sizeof((struct failure *)NULL)->pass];
 };
 
+static struct record record_of(const struct run *r, const struct failure *f)
+{
+    struct record q = {.time = f->time,
+                       .particle = f->particle,
+                       .step = f->step,
+                       .cause = f->cause,
+                       .array = f->array ? (uint64_t)(f->array - r->plan->array) + 1 : 0};
+    memcpy(q.x, f->x, sizeof q.x);
+    memcpy(q.pass, f->pass, sizeof q.pass);
+    return q;
+}
+
+static struct failure failure_of(const struct run *r, const struct record *q)
+{
+    struct failure f = {.happened = true,
+                        .time = q->time,
+                        .particle = q->particle,
+                        .step = q->step,
+                        .cause = (enum watch_cause)q->cause,
+                        .array = q->array ? &r->plan->array[q->array - 1] : NULL};
+    memcpy(f.x, q->x, sizeof f.x);
+    memcpy(f.pass, q->pass, sizeof f.pass);
+    return f;
+}
+
 static int record_first(struct run *r, const struct sign *s, bool any, struct error *e)
 {
-    struct failure *first = &r->watch->count[s->cause].first;
-    struct failure own = {.step = r->step, .time = r->time, .cause = s->cause};
     struct foremost f = {.key = any ? s->weight : NAN};
-    if (any)
-        own = watch_record(r, s);
-    struct record q = {.particle = own.particle};
-    f.id = own.particle;
-    q.array = own.array ? (uint64_t)(own.array - r->plan->array) + 1 : 0;
-    memcpy(q.x, own.x, sizeof q.x);
-    memcpy(q.pass, own.pass, sizeof q.pass);
+    struct record q = {.time = 0.0};
+    if (any) {
+        const struct failure own = watch_record(r, s);
+        q = record_of(r, &own);
+        f.id = own.particle;
+    }
     if (foremost_find(r, &f, &q, sizeof q, e))
         return -1;
-    own.happened = f.any;
-    own.array = q.array ? &r->plan->array[q.array - 1] : NULL;
-    own.particle = q.particle;
-    memcpy(own.x, q.x, sizeof own.x);
-    memcpy(own.pass, q.pass, sizeof own.pass);
-    *first = own;
+    if (f.any)
+        r->watch->count[s->cause].first = failure_of(r, &q);
     return 0;
 }
 
@@ -74,4 +92,22 @@ int watch_blame(const struct run *r, const struct sign *s, enum watch_blame *out
 int watch_count_event(struct run *r, const struct sign *s, enum watch_blame blame, struct error *e)
 {
     return watch_count(r, s, blame == WATCH_OURS || (blame == WATCH_NOBODY && run_speaks(r)), e);
+}
+
+/* Of several that failed at once the first rank's, as of their sentences (ranks_agree). */
+int watch_share_failure(struct run *r, struct error *e)
+{
+    struct watch *w = r->watch;
+    if (!r->domain)
+        return 0;
+    const int rank = wire_rank(r->domain->wire);
+    struct foremost f = {.key = w->failure.happened ? 0.0 : NAN, .id = rank};
+    struct record q = record_of(r, &w->failure);
+    if (foremost_find(r, &f, &q, sizeof q, e))
+        return -1;
+    if (f.any && !w->failure.happened)
+        watch_forget(r);
+    if (f.any)
+        w->failure = failure_of(r, &q);
+    return 0;
 }

@@ -105,9 +105,10 @@ static bool is_made(const struct run *r, size_t array, int column)
     return false;
 }
 
-/* A sort carries along what is state; the rest would have been made anew by passes that now never run. */
-static void forget_derived(const struct run *r)
+void watch_forget(const struct run *r)
 {
+    if (!r->watch->sorted)
+        return;
     for (size_t a = 0; a < r->plan->n_array; a++)
         for (size_t c = 0; c < r->plan->array[a].p.n_column; c++) {
             const struct particles *p = &r->plan->array[a].p;
@@ -124,8 +125,7 @@ int watch_fail(const struct run *r, const struct sign *s, struct error *e, const
 {
     struct text t = {.used = 0};
     va_list arguments;
-    if (r->watch->sorted)
-        forget_derived(r);
+    watch_forget(r);
     va_start(arguments, what);
     add_list(&t, what, arguments);
     va_end(arguments);
@@ -138,7 +138,7 @@ int watch_fail(const struct run *r, const struct sign *s, struct error *e, const
     }
     add(&t, "%s step %llu, t = %g", s->array ? "" : " at", (unsigned long long)r->step, r->time);
     if (s->others)
-        add(&t, ", like %zu others", s->others);
+        add(&t, ", like %zu others%s", s->others, r->domain ? " of its rank" : "");
     if (s->array)
         add_values(&t, s);
     r->watch->failure = watch_record(r, s);

@@ -382,7 +382,7 @@ static int compile_neighbours(struct scene *s, const cJSON *node, struct error *
 static int compile_ranks(struct scene *s, const cJSON *node, struct error *e)
 {
     static const char *const keys[] = {"partition", "imbalance"};
-    static const char *const words[] = {"rcb", "rib", "hsfc"};
+    static const char *const words[] = {"rcb", "rib", "hsfc", "slab"};
     s->ranks.partition = 0;
     s->ranks.imbalance = 1.01;
     if (!node)

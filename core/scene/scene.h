@@ -252,7 +252,7 @@ struct scene {
         const char *manager; /* NULL: the plan chooses */
     } neighbours;            /* optional key "neighbours": {"skin": 0.1, "manager": "octree"} */
     struct {
-        size_t partition; /* by domain/partition.h: 0 "rcb", 1 "rib", 2 "hsfc" */
+        size_t partition; /* by domain/partition.h: 0 "rcb", 1 "rib", 2 "hsfc", 3 "slab" */
         double
             imbalance; /* largest share of a rank over the mean, from which the domain is cut anew */
     } ranks;           /* optional key "ranks": {"partition": "rcb", "imbalance": 1.01} */

@@ -41,9 +41,9 @@ def wrapper(folder, name, text):
 class Job:
     """An mpirun under way, with all that it starts in a session of its own."""
 
-    def __init__(self, ranks, *words, options=(), env=None):
+    def __init__(self, ranks, *words, options=(), before=(), env=None):
         self.begin = time.monotonic()
-        self.process = subprocess.Popen([*MPIRUN, *options, *(["-n", str(ranks)] if ranks else []), *words],
+        self.process = subprocess.Popen([*before, *MPIRUN, *options, "-n", str(ranks), *words],
                                         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                                         env={**ENVIRONMENT, **(env or {})}, start_new_session=True)
 
@@ -97,3 +97,18 @@ def descendants(pid):
         found += more
         todo += more
     return found
+
+
+def running(pid):
+    try:
+        with open(f"/proc/{pid}/stat") as file:
+            return file.read().rsplit(")", 1)[1].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def gone(ranks, until):
+    """Waits for their ends; those that are left."""
+    while any(running(pid) for pid in ranks.values()) and time.monotonic() < until:
+        time.sleep(0.01)
+    return [pid for pid in ranks.values() if running(pid)]

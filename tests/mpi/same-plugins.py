@@ -81,10 +81,13 @@ def case(name, ranks):
         folder(os.path.join(name, str(rank)))
 
 
-# Copies of the same bytes are the same: what is said then is said after the comparison.
+# Copies of the same bytes are the same.
 case("same", 3)
 done, seconds = run("same", 3)
-expect("equal copies", done, seconds, 2, "this version runs on one rank")
+good = done.returncode == 0 and os.path.exists(path("out", "summary.json"))
+print(f"{'ok  ' if good else 'MISS'} equal copies: exit code {done.returncode}, {seconds:.1f} s")
+missed += not good
+shutil.rmtree(path("out"), ignore_errors=True)
 
 # One byte of a section that is not loaded: nothing but the comparison can see it.
 case("byte", 3)

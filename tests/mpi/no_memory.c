@@ -1,6 +1,8 @@
 /* no_memory.c -- memory that is refused: in front of the C library by LD_PRELOAD. Of the calls of malloc, calloc and
  * realloc that the program itself makes, not its libraries, those from the number in SPH_NO_MEMORY on fail, SPH_FEW of
  * them (1). At the end it tells in the file SPH_MEMORY_CALLS how many there were. */
+#include "config.h"
+
 #include <link.h>
 #include <stdatomic.h>
 #include <stdbool.h>

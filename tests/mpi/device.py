@@ -1,8 +1,8 @@
 """Runs on several ranks, each with an OpenCL device, against the same runs on the processor on one rank: to rounding,
 whoever holds which particle, whatever the domain's sides are, with several arrays and with neighbours looked for in
 other places; which device a rank takes; programs built once for all ranks; one device that fails ends all, with its
-own sentence. `make check-long' (tests/mpi/device-long.py) has it all. Norm: root of the sum of squares over all particles and components of a column, of the difference over
-the processor's."""
+own sentence. `make check-long' (tests/mpi/device-long.py) has it all. Norm: root of the sum of squares over all
+particles and components of a column, of the difference over the processor's."""
 import glob
 import json
 import os

@@ -9,6 +9,7 @@ import sys
 import tempfile
 
 import h5py
+import numpy
 
 SPH = os.environ["SPH"]
 EXAMPLES = os.path.join(os.environ["top_srcdir"], "examples")
@@ -29,7 +30,7 @@ def changed(scene, **top):
 
 class Snapshot:
     """A snapshot in memory: time, step, arrays' names, columns by name (x: the points), in the order of the
-    particles' ids."""
+    particles' ids; piece: the rank that wrote a particle."""
 
     def __init__(self, path):
         with h5py.File(path) as file:
@@ -40,7 +41,9 @@ class Snapshot:
             self.names = [name.decode() for name in field["array_names"]]
             columns = {name: data[:] for name, data in root["PointData"].items()}
             columns["x"] = root["Points"][:]
+            pieces = root["NumberOfPoints"][:]
         order = columns["id"].argsort(kind="stable")
+        self.piece = numpy.repeat(numpy.arange(len(pieces)), pieces)[order]
         self.column = {name: data[order] for name, data in columns.items()}
 
     def __getitem__(self, name):

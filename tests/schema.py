@@ -191,6 +191,7 @@ expected = {
     "scene.c:compile_limits:keys": keys("properties", "limits"),
     "scene.c:compile_kernel:keys": keys("properties", "kernel", "anyOf", 1),
     "scene.c:compile_neighbours:keys": keys("properties", "neighbours"),
+    "scene.c:compile_ranks:keys": keys("properties", "ranks"),
     "scene_particles.c:compile_array:keys": definition("array"),
     "scene_particles.c:compile_column:keys": definition("column", "anyOf", 1),
     "scene_fill.c:scene_fill:lattice_keys": definition("lattice"),

@@ -270,6 +270,14 @@ change('"output":', '"neighbours": {"manager": @"tree"}, "output":', "/neighbour
 change('"output":', '"neighbours": {"manager": @3}, "output":', "/neighbours/manager: ")
 change('"output":', '"neighbours": {@"manger": "boxes"}, "output":', "/neighbours/manger: ",
        '(did you mean "manager"?)')
+# Of ranks.
+change('"output":', '"ranks": {"partition": @"rbc"}, "output":', "/ranks/partition: ", '"rbc"', '(did you mean "rcb"?)')
+change('"output":', '"ranks": {"partition": @"metis"}, "output":', "/ranks/partition: ", "rcb, rib, hsfc, slab")
+change('"output":', '"ranks": {"partition": @2}, "output":', "/ranks/partition: ")
+change('"output":', '"ranks": {"imbalance": @0.9}, "output":', "/ranks/imbalance: ", "0.9 is no bound", "1")
+change('"output":', '"ranks": {"imbalance": @"low"}, "output":', "/ranks/imbalance: ")
+change('"output":', '"ranks": {@"partitions": "rcb"}, "output":', "/ranks/partitions: ", '(did you mean "partition"?)')
+change('"output":', '"ranks": @4, "output":', "/ranks: ")
 change('"name": "gsph"', '"name": "gsph", "fuse": @"no"', "/scheme/fuse: ")
 change('"every": 0.005', '"every": @0', "/output/every: 0 is not a time interval")
 for wrong, hint in (('@{"steps": 10, "every": 1}', 'give "steps" or "every", not both'), ("@{}", 'give "steps" or "every"'),

@@ -120,8 +120,7 @@ static void print_ways(const struct plan_ranks *r, FILE *out)
 void plan_ranks_print(const struct plan_ranks *r, const struct plan *plan, FILE *out)
 {
     const struct forecast *f = &r->by[r->chosen];
-    fprintf(out, "ranks: %d, cut by %s; at the start into equal numbers of particles\n", f->ranks,
-            partitioner_name[r->chosen]);
+    fprintf(out, "ranks: %d, cut by %s\n", f->ranks, partitioner_name[r->chosen]);
     print_shares(f, out);
     print_exchanges(f, plan, out);
     print_ways(r, out);

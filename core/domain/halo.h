@@ -73,6 +73,13 @@ struct halo_column {
     size_t array;
     int column;
 };
+/* What was sent since then was columns. */
+static inline void halo_count(struct halo *h, const struct wire_count *before)
+{
+    const struct wire_count now = wire_count(h->wire);
+    h->sent.messages += now.messages - before->messages;
+    h->sent.bytes += now.bytes - before->bytes;
+}
 /* Bytes that an exchange of these sends. */
 size_t halo_bytes(const struct halo *h, const struct halo_column *c, size_t n);
 /* All of them in one message to each rank. Between the two, neither the columns nor the halo may change. */

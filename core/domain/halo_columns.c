@@ -112,9 +112,7 @@ int halo_begin(struct halo *h, const struct box *box, const struct halo_column *
     }
     const struct wire_count before = wire_count(h->wire);
     const int status = wire_begin(h->wire, h->parcel, h->n_peer, receive, h->n_peer, e);
-    const struct wire_count after = wire_count(h->wire);
-    h->sent.messages += after.messages - before.messages;
-    h->sent.bytes += after.bytes - before.bytes;
+    halo_count(h, &before);
     return status;
 }
 

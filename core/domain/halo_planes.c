@@ -77,8 +77,10 @@ int halo_trade(struct halo *h, const struct halo_plane *p, size_t n, struct erro
         h->parcel[k] = (struct parcel){q->rank, q->out, out};
         receive[k] = (struct parcel){q->rank, q->in, in};
     }
+    const struct wire_count before = wire_count(h->wire);
     if (wire_begin(h->wire, h->parcel, h->n_peer, receive, h->n_peer, e) || wire_finish(h->wire, e))
         return -1;
+    halo_count(h, &before);
     for (size_t k = 0; k < h->n_peer; k++)
         take(h, k, p, n);
     return 0;

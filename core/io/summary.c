@@ -199,19 +199,22 @@ static void put_conservation(struct maker *m, cJSON *root, const struct summary 
 /* Passes of the same name are one entry: their times add up. */
 static void put_passes(struct maker *m, cJSON *cost, const struct summary *s)
 {
-    cJSON *passes = put_object(m, cost, "pass_s"), *counts = put_object(m, cost, "pass_pairs");
+    cJSON *passes = put_object(m, cost, "pass_s"), *counts = put_object(m, cost, "pass_pairs"),
+          *swept = put_object(m, cost, "pass_sweeps");
     for (size_t i = 0; i < s->n_pass; i++) {
         double seconds = 0;
-        uint64_t pairs = 0;
+        uint64_t pairs = 0, sweeps = 0;
         if (cJSON_HasObjectItem(passes, s->pass[i].name))
             continue;
         for (size_t k = i; k < s->n_pass; k++)
             if (strcmp(s->pass[k].name, s->pass[i].name) == 0) {
                 seconds += s->pass[k].seconds;
                 pairs += s->pass[k].pairs;
+                sweeps += s->pass[k].sweeps;
             }
         put_number(m, passes, s->pass[i].name, seconds);
         put_count(m, counts, s->pass[i].name, pairs);
+        put_count(m, swept, s->pass[i].name, sweeps);
     }
     if (s->shared)
         put(m, cost, "pass_in", cJSON_Duplicate(s->shared, 1));

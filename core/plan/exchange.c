@@ -101,8 +101,8 @@ static int passes(struct going *g, enum moment moment, bool corrects, struct err
         if (before_sweep(g, i, false, corrects, e))
             return -1;
         written(g, p);
-        if (!p->max_sweeps)
-            continue;
+        if (!p->max_sweeps || (moment == MOMENT_EVALUATE && g->evaluation > 0))
+            continue; /* further sweeps are alike in all evaluations */
         if (before_sweep(g, i, true, corrects, e))
             return -1;
         written(g, p);

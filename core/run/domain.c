@@ -104,7 +104,9 @@ int run_domain_open(struct run *r, struct error *e)
         wire_close(wire);
         return status;
     }
-    if (ranks_agree(shared(&r->domain, r->plan, e), e)) {
+    const int status = ranks_agree(shared(&r->domain, r->plan, e), e);
+    if (status) {
+        run_domain_close(r);
         wire_close(wire);
         return -1;
     }
@@ -242,24 +244,57 @@ int run_domain_uneven(struct run *r, bool *uneven, struct error *e)
     return 0;
 }
 
+/* How even the shares will be once the n particles at these places, whose weights are known, have gone to where they
+ * belong: those that have crossed a cut since are not yet there, and count for whom they come to. */
+static int foresee_imbalance(struct run *r, double *const *place, size_t n, struct error *e)
+{
+    struct run_domain *d = r->domain;
+    const size_t ranks = (size_t)wire_size(d->wire);
+    double *share = calloc(ranks, sizeof *share), most = 0.0, sum = 0.0;
+    uint32_t *op = calloc(ranks, sizeof *op);
+    int status = share && op ? 0 : error_memory(e, "the domain", ranks * sizeof *share);
+    for (size_t i = 0; !status && i < n; i++) {
+        const double x[3] = {place[0][i], place[1][i], place[2][i]};
+        share[partition_owner(d->partition, x)] += (double)d->weight[i];
+    }
+    for (size_t k = 0; !status && k < ranks; k++)
+        op[k] = SPH_REDUCE_SUM;
+    if (!status)
+        status = run_share_numbers(r, share, op, ranks, e);
+    for (size_t k = 0; !status && k < ranks; k++) {
+        most = share[k] > most ? share[k] : most;
+        sum += share[k];
+    }
+    if (!status)
+        d->imbalance = sum > 0.0 ? most * (double)ranks / sum : 1.0;
+    free(share);
+    free(op);
+    return status;
+}
+
 /* Cuts anew if the shares have come to differ too much. */
 static int balance(struct run *r, struct error *e)
 {
     struct run_domain *d = r->domain;
     const struct plan *plan = r->plan;
-    if (weigh_all(r, e))
-        return -1;
-    if (!r->lists_made || !(d->imbalance > plan->scene->ranks.imbalance))
-        return 0;
     size_t at = 0;
+    double sum;
+    if (run_domain_cost(r, &sum, e))
+        return -1;
+    if (!r->lists_made)
+        return 0;
     double *const place[3] = {d->place, d->place + d->capacity, d->place + 2 * d->capacity};
     for (size_t a = 0; a < plan->n_array; a++)
         for (size_t i = 0; i < plan->array[a].p.n; i++, at++) {
-            double x[3];
+            double x[3] = {0.0, 0.0, 0.0};
             place_of(&plan->array[a], plan->dim, i, x);
-            for (int c = 0; c < plan->dim; c++)
+            for (int c = 0; c < 3; c++)
                 place[c][at] = x[c];
         }
+    if (foresee_imbalance(r, place, at, e))
+        return -1;
+    if (!(d->imbalance > plan->scene->ranks.imbalance))
+        return 0;
     d->cuts++;
     return partition_cut(d->partition, (const double *const *)place, d->weight, at, e);
 }

@@ -1,4 +1,5 @@
-/* run/forecast.c -- see forecast.h. Begins a run up to its first lists, looks at them, and lets go. */
+/* run/forecast.c -- see forecast.h. Begins a run up to its first lists, or up to the first evaluation where that sets
+ * smoothing lengths, looks at them, and lets go. */
 #include "run/forecast.h"
 #include "run/domain.h"
 #include <stdlib.h>
@@ -100,7 +101,11 @@ static int tell(struct run *r, struct forecast *f, struct error *e)
 {
     struct forecast_rank mine;
     f->ranks = wire_size(r->domain->wire);
-    if (run_lists(r, false, e) || exchanges_make(&f->exchanges, r->plan, e))
+    /* Smoothing lengths that the first evaluation sets are not the scene's: neither are the ghosts. */
+    if (r->h_fixed ? run_lists(r, false, e)
+                   : run_passes(r, MOMENT_START, e) || run_passes(r, MOMENT_EVALUATE, e))
+        return -1;
+    if (exchanges_make(&f->exchanges, r->plan, e))
         return -1;
     f->of = calloc((size_t)f->ranks, sizeof *f->of);
     f->by = calloc((size_t)f->ranks, sizeof *f->by);

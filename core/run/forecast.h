@@ -1,4 +1,4 @@
-/* run/forecast.h -- what the first cut of the domain among ranks comes to, before anything is run: shares, ghosts,
+/* run/forecast.h -- what the first cut of the domain among ranks comes to, before any step: shares, ghosts,
  * pairs across, and what steps will send. */
 #ifndef RUN_FORECAST_H
 #define RUN_FORECAST_H

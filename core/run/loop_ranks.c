@@ -11,7 +11,7 @@
 int loop_ranks_open(struct loop_ranks *l, struct run *r, const struct output *out, bool resumed,
                     struct error *e)
 {
-    *l = (struct loop_ranks){.first = NAN, .last = NAN, .most = NAN};
+    *l = (struct loop_ranks){.first = NAN, .last = NAN, .most = NAN, .halos = UINT64_MAX};
     if (!run_shared(r))
         return 0;
     l->run = r;

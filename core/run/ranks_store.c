@@ -329,6 +329,24 @@ static int settle(struct reading *q, struct error *e)
 
 /* -- All -------- */
 
+/* What the watch counts in lists it has counted when they were made. */
+static int lists_again(struct reading *q, bool counted, struct error *e)
+{
+    struct watch *w = q->r->watch;
+    struct watch_count count[WATCH_CAUSES];
+    const size_t bytes = WATCH_CAUSES * q->r->plan->n_array * sizeof *w->here;
+    uint64_t *here = malloc(bytes + 1);
+    if (!here)
+        return error_memory(e, "the watch", bytes);
+    memcpy(here, w->here, bytes);
+    memcpy(count, w->count, sizeof count);
+    const int status = run_lists_again(q->r, q->kept, counted, e);
+    memcpy(w->here, here, bytes);
+    memcpy(w->count, count, sizeof count);
+    free(here);
+    return status;
+}
+
 static int lists_restore(struct reading *q, struct error *e)
 {
     static const uint32_t op = SPH_REDUCE_MIN;
@@ -345,7 +363,7 @@ static int lists_restore(struct reading *q, struct error *e)
         r->lists_suspect = true;
         return 0;
     }
-    if (run_lists_again(r, q->kept, !same, e))
+    if (lists_again(q, !same, e))
         return -1;
     if (!same)
         return 0;

@@ -1,6 +1,7 @@
 /* run/loop_ranks.c -- see loop_ranks.h. Takes numbers from the run and its domain, changes nothing there. */
 #include "run/loop_ranks.h"
 #include "io/summary.h"
+#include "run/device.h"
 #include <stdlib.h>
 #include <sys/resource.h>
 
@@ -235,6 +236,8 @@ int loop_ranks_gather(struct loop_ranks *l, const struct summary_memory *held, s
         return 0;
     const struct plan *plan = l->run->plan;
     struct wire *wire = l->run->domain->wire;
+    if (l->run->device)
+        run_device_costs(l->run);
     const struct rank_figures mine = figures(l, held);
     struct rank_figures *of = calloc((size_t)wire_size(wire), sizeof *of);
     free(l->array_n);
@@ -352,8 +355,10 @@ static void put_steady(const struct loop_ranks *l, const struct rank_figures *s,
     put_count(to, "steps", l->steady_steps);
     put_count(to, "messages", s->steady.messages);
     put_count(to, "bytes", s->steady.bytes);
-    put_count(to, "planned_messages", s->planned.messages);
-    put_count(to, "planned_bytes", s->planned.bytes);
+    if (!l->run->device) { /* there passes that share a kernel share a message */
+        put_count(to, "planned_messages", s->planned.messages);
+        put_count(to, "planned_bytes", s->planned.bytes);
+    }
     put_number(to, "messages_per_step", (double)s->steady.messages / steps);
     put_number(to, "bytes_per_step", (double)s->steady.bytes / steps);
 }

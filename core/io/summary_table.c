@@ -196,7 +196,7 @@ static void print_ranks(const struct summary *s, FILE *out, int width)
     if (!isnan(bytes))
         fprintf(out, "\n%*s%.3g kB in %.0f messages a step, %.0f %% of the time waiting", width + 2,
                 "", 1e-3 * bytes, member(exchange, "messages_per_step"),
-                s->cost.loop > 0.0 ? 100.0 * s->cost.mpi / s->cost.loop : 0.0);
+                s->cost.wall > 0.0 ? 100.0 * s->cost.mpi / s->cost.wall : 0.0);
     fputs("\n", out);
 }
 

@@ -353,8 +353,11 @@ int run_domain_meet(struct run *r, struct error *e)
                                  .n_want = d->n_want,
                                  /* Lists of other frames are made later: there is room to move. */
                                  .factor = 1.0 + (plan->n_frame > 1 ? 2.0 : 1.0) * r->skin};
+    const struct wire_count before = wire_count(d->wire);
     d->halos++;
-    return halo_make(&d->halo, &job, r->ghosts, e);
+    const int status = halo_make(&d->halo, &job, r->ghosts, e);
+    add_sent(d, &d->for_ghosts, &before);
+    return status;
 }
 
 int run_domain_ghosts(struct run *r, struct error *e)
@@ -362,9 +365,9 @@ int run_domain_ghosts(struct run *r, struct error *e)
     struct run_domain *d = r->domain;
     const struct plan *plan = r->plan;
     const size_t n = plan->n_array;
-    const struct wire_count before = wire_count(d->wire);
     if (run_domain_meet(r, e))
         return -1;
+    const struct wire_count before = wire_count(d->wire);
     for (size_t a = 0; a < n; a++) {
         struct plan_array *pa = &plan->array[a];
         if (particles_resize(&pa->p, pa->p.n, d->halo.n_ghost[a], e))

@@ -1,6 +1,7 @@
 /* run/loop_ranks.c -- see loop_ranks.h. Takes numbers from the run and its domain, changes nothing there. */
 #include "run/loop_ranks.h"
 #include "io/summary.h"
+#include "run/device.h"
 #include <stdlib.h>
 #include <sys/resource.h>
 
@@ -16,7 +17,8 @@ int loop_ranks_open(struct loop_ranks *l, struct run *r, const struct output *ou
         return 0;
     l->run = r;
     l->sweeps = calloc(r->plan->n_pass + 1, sizeof *l->sweeps);
-    if (!l->sweeps)
+    l->n = calloc(r->plan->n_array + 1, sizeof *l->n);
+    if (!l->sweeps || !l->n)
         return error_memory(e, "the passes' sweeps", r->plan->n_pass * sizeof *l->sweeps);
     if (exchanges_make(&l->plan, r->plan, e))
         return -1;
@@ -44,6 +46,7 @@ void loop_ranks_free(struct loop_ranks *l)
     csv_close(&l->csv, &ignored);
     exchanges_free(&l->plan);
     free(l->sweeps);
+    free(l->n);
     free(l->of);
     free(l->array_n);
     free(l->pass_s);
@@ -87,31 +90,28 @@ static uint64_t times(const struct loop_ranks *l, const struct exchange *x)
 }
 
 /* What the plan says that this rank sends in this step, to those whose ghosts it has now. */
-static int say_planned(const struct loop_ranks *l, struct halo_sent *to)
+static void say_planned(const struct loop_ranks *l, struct halo_sent *to)
 {
     const struct run *r = l->run;
     const struct halo *h = &r->domain->halo;
-    size_t *n = calloc(r->plan->n_array + 1, sizeof *n);
-    for (size_t k = 0; n && k < h->n_peer; k++) {
+    for (size_t k = 0; k < h->n_peer; k++) {
         for (size_t a = 0; a < r->plan->n_array; a++)
-            n[a] = h->peer[k].part[a].n_send;
+            l->n[a] = h->peer[k].part[a].n_send;
         for (size_t i = 0; i < l->plan.n; i++) {
-            const uint64_t bytes = exchange_bytes(&l->plan, &l->plan.at[i], r->plan, n);
+            const uint64_t bytes = exchange_bytes(&l->plan, &l->plan.at[i], r->plan, l->n);
             to->bytes += bytes * times(l, &l->plan.at[i]);
             to->messages += (bytes > 0) * times(l, &l->plan.at[i]);
         }
     }
-    free(n);
-    return n ? 0 : -1;
 }
 
 /* A step counts if ghosts were made neither in it nor in the one before: after that all columns are old once. */
 void loop_ranks_step_ends(struct loop_ranks *l)
 {
     const struct run *r = l->run;
-    if (!r || r->domain->halos != l->halos || l->halos != l->halos_before ||
-        say_planned(l, &l->planned))
+    if (!r || r->domain->halos != l->halos || l->halos != l->halos_before)
         return;
+    say_planned(l, &l->planned);
     l->steady_steps++;
     l->steady.messages += r->domain->halo.sent.messages - l->sent.messages;
     l->steady.bytes += r->domain->halo.sent.bytes - l->sent.bytes;
@@ -236,6 +236,8 @@ int loop_ranks_gather(struct loop_ranks *l, const struct summary_memory *held, s
         return 0;
     const struct plan *plan = l->run->plan;
     struct wire *wire = l->run->domain->wire;
+    if (l->run->device)
+        run_device_costs(l->run);
     const struct rank_figures mine = figures(l, held);
     struct rank_figures *of = calloc((size_t)wire_size(wire), sizeof *of);
     free(l->array_n);
@@ -353,8 +355,10 @@ static void put_steady(const struct loop_ranks *l, const struct rank_figures *s,
     put_count(to, "steps", l->steady_steps);
     put_count(to, "messages", s->steady.messages);
     put_count(to, "bytes", s->steady.bytes);
-    put_count(to, "planned_messages", s->planned.messages);
-    put_count(to, "planned_bytes", s->planned.bytes);
+    if (!l->run->device) { /* there passes that share a kernel share a message */
+        put_count(to, "planned_messages", s->planned.messages);
+        put_count(to, "planned_bytes", s->planned.bytes);
+    }
     put_number(to, "messages_per_step", (double)s->steady.messages / steps);
     put_number(to, "bytes_per_step", (double)s->steady.bytes / steps);
 }

@@ -27,6 +27,7 @@ struct loop_ranks {
     uint64_t halos, halos_before;
     struct halo_sent sent;
     uint64_t *sweeps; /* [pass] */
+    size_t *n;        /* [array]: room */
     /* Since then. */
     uint64_t steady_steps;
     struct halo_sent steady, planned;

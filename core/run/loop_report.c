@@ -101,7 +101,8 @@ static int parts_make(struct loop *l, struct summary_parts *q, struct error *e)
     q->pass = calloc(plan->n_pass + 1, sizeof *q->pass);
     q->plugin = calloc(plan->registry->n_plugin + 1, sizeof *q->plugin);
     q->plan = plan_json(plan);
-    if (!q->name || !q->count || !q->pass || !q->plugin || !q->plan)
+    if (!q->name || !q->count || !q->pass || !q->plugin || !q->plan ||
+        (l->ranks.of && !q->on_ranks))
         return error_memory(e, "the summary", 1);
     for (size_t a = 0; a < plan->n_array; a++) {
         q->name[a] = plan->array[a].p.name;

@@ -270,9 +270,10 @@ if part("alone"):
         job = Job(3, SPH, *words).end(BOUND)
         expect(f"on ranks: {words}", (job.returncode, job.stdout, job.stderr) == (0, alone.stdout, alone.stderr),
                job.stderr + job.stdout)
-    job = Job(3, SPH, "plan", noh).end(BOUND)
-    first = scenes.command("plan", noh).stdout.splitlines()[0]
-    expect("on ranks: plan", job.returncode == 0 and job.stdout.splitlines().count(first) == 1, job.stderr + job.stdout)
+    alone, job = scenes.command("plan", noh), Job(3, SPH, "plan", noh).end(BOUND)
+    expect("on ranks: plan, and how they share the domain",
+           (job.returncode, job.stderr) == (0, "") and job.stdout.startswith(alone.stdout + "ranks: 3, cut by rcb\n") and
+           job.stdout.count("ranks: 3") == 1, job.stderr + job.stdout)
     job = Job(3, SPH, "render", snapshot, "--field", "rho", "--out", path("picture.png")).end(BOUND)
     expect("on ranks: render", job.returncode == 0 and os.path.exists(path("picture.png")), job.stderr)
     job = Job(3, SPH, "new-plugin", "mine", options=("--wdir", SCRATCH)).end(BOUND)

@@ -120,6 +120,8 @@ static int load(struct loaded *l, const struct scene_options *o, struct error *e
     if (registry_init(&l->registry, e))
         return -1;
     l->has_registry = true;
+    int ranks;
+    ranks_count(&l->registry.rank, &ranks);
     for (size_t i = 0; i < o->n_load; i++)
         if (loader_load(&l->registry, o->load[i], e))
             return -1;

@@ -149,8 +149,10 @@ int partition_cut(struct partition *p, const double *const *x, const float *weig
 }
 
 /* Zoltan can do so for bisection by coordinates alone. */
-int partition_store(const struct partition *p, struct store *s, struct error *e)
+int partition_store(struct partition *p, struct store *s, struct error *e)
 {
+    if (!p->zoltan)
+        return slab_store(&p->slab, s, e);
     if (p->which != PARTITION_RCB)
         return 0;
     size_t n = Zoltan_Serialize_Size(p->zoltan);
@@ -168,6 +170,10 @@ int partition_restore(struct partition *p, struct store *s, bool *there, struct 
 {
     size_t n = 0;
     char *cuts = NULL;
+    if (!p->zoltan) {
+        *there = store_has(s, "slabs");
+        return *there ? slab_store(&p->slab, s, e) : 0;
+    }
     *there = p->which == PARTITION_RCB && store_has(s, "cuts");
     if (!*there)
         return 0;
@@ -215,7 +221,7 @@ int partition_cut(struct partition *p, const double *const *x, const float *weig
     return error_set(e, EXIT_USAGE, "built without Zoltan: one rank only");
 }
 
-int partition_store(const struct partition *p, struct store *s, struct error *e)
+int partition_store(struct partition *p, struct store *s, struct error *e)
 {
     (void)p;
     (void)s;

@@ -19,8 +19,8 @@ void partition_close(struct partition *p);
 /* Cuts anew, for points x[axis][n] of this rank with their weights (> 0), so that all ranks have about the same. */
 int partition_cut(struct partition *p, const double *const *x, const float *weight, size_t n,
                   struct error *e);
-/* Its cuts, where they can be kept (rcb), into a checkpoint; or out of one of as many ranks: *there. */
-int partition_store(const struct partition *p, struct store *s, struct error *e);
+/* Its cuts, where they can be kept (rcb, slab), into a checkpoint; or out of one of as many ranks: *there. */
+int partition_store(struct partition *p, struct store *s, struct error *e);
 int partition_restore(struct partition *p, struct store *s, bool *there, struct error *e);
 /* The rank of a place by the cuts there are: of any place, however far outside. */
 int partition_owner(const struct partition *p, const double *x);

@@ -21,6 +21,18 @@ void slab_close(struct slab *s)
     *s = (struct slab){0};
 }
 
+int slab_store(struct slab *s, struct store *store, struct error *e)
+{
+    int32_t axis = s->axis;
+    if (store_block(store, "slabs", STORE_I32, &axis, 1, e) ||
+        store_block(store, "slab_cuts", STORE_F64, s->cut, (size_t)s->ranks - 1, e))
+        return -1;
+    if (axis < 0 || axis >= s->dim)
+        return store_broken(store, e, "the cuts of the domain");
+    s->axis = axis;
+    return 0;
+}
+
 int slab_owner(const struct slab *s, const double *x)
 {
     int rank = 0;

@@ -3,7 +3,7 @@
 #ifndef DOMAIN_SLAB_H
 #define DOMAIN_SLAB_H
 
-#include "base/error.h"
+#include "base/store.h"
 #include <stddef.h>
 
 struct slab {
@@ -16,6 +16,8 @@ int slab_open(struct slab *s, int dim, struct error *e);
 void slab_close(struct slab *s);
 int slab_cut(struct slab *s, const double *const *x, const float *weight, size_t n,
              struct error *e);
+/* Into a checkpoint or out of one of as many ranks. */
+int slab_store(struct slab *s, struct store *store, struct error *e);
 int slab_owner(const struct slab *s, const double *x);
 
 #endif

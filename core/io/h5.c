@@ -185,6 +185,7 @@ int h5_error(struct error *e, enum exit_code code, const char *verb, const char 
 
 static void quieten(void)
 {
+    signal(SIGXFSZ, SIG_IGN); /* an error will do */
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
 }
 
@@ -208,7 +209,6 @@ static int begin(struct h5_out *out, int fd, bool new, struct error *e)
     out->disk.fd = fd;
     if (fd < 0)
         return error_set(e, EXIT_RUN, "cannot write %s: %s", out->shown, strerror(errno));
-    signal(SIGXFSZ, SIG_IGN); /* an error will do */
     out->driver = H5FDregister(&disk_driver);
     const hid_t fapl = out->driver < 0 ? -1 : access_list(out);
     if (fapl >= 0)

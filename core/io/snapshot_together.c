@@ -1,8 +1,9 @@
-/* snapshot_together.c -- what particles have goes into a snapshot that is made for it: each process its own, all
- * in one collective write at a time.
+/* snapshot_together.c -- what particles have goes into a snapshot that is made for it: each process writes its own rows
+ * of every data set, all at the same time.
  *
- * What can fail on one process alone comes first, and then all agree; from there on every process makes every call,
- * whatever its own has come to, so that none waits for another in vain. */
+ * The file is opened and closed by all together, with an agreement before each step: nobody waits for one that has
+ * failed. The rows are written by each for itself: Open MPI's collective writes (4.1) return success when the disk has
+ * refused what they wrote. */
 #include "config.h"
 
 #include "io/snapshot_private.h"
@@ -23,8 +24,8 @@ bool snapshot_can_fill(void)
 struct together {
     struct writer *w;
     hid_t file, transfer;
-    hid_t *set;                /* [n_set] */
-    size_t n_set, first, most; /* this process's first row; rows of the one with the most */
+    hid_t *set;          /* [n_set] */
+    size_t n_set, first; /* this process's first row */
 };
 
 static int failed(const struct together *t)
@@ -42,42 +43,40 @@ static int open_sets(struct together *t)
             return failed(t);
     }
     t->transfer = H5Pcreate(H5P_DATASET_XFER);
-    return t->transfer < 0 || H5Pset_dxpl_mpio(t->transfer, H5FD_MPIO_COLLECTIVE) < 0 ? failed(t)
-                                                                                      : 0;
+    return t->transfer < 0 || H5Pset_dxpl_mpio(t->transfer, H5FD_MPIO_INDEPENDENT) < 0 ? failed(t)
+                                                                                       : 0;
 }
 
-/* Rows of a data set, this process's from `row` on; of a process that has fewer, none. */
-static int write_slab(const struct together *t, size_t k, size_t row)
+/* n rows of a data set, this process's from `row` on. */
+static int write_slab(const struct together *t, size_t k, size_t row, size_t n)
 {
     const struct out_set what = snapshot_set(t->w, k);
-    const size_t mine = t->w->parts.rows[t->w->parts.mine];
-    const size_t left = row < mine ? mine - row : 0;
-    const size_t n = left < SNAPSHOT_SLAB ? left : SNAPSHOT_SLAB;
-    const hsize_t start[2] = {t->first + row, 0}, extent[2] = {n ? n : 1, what.ncomp};
+    const hsize_t start[2] = {t->first + row, 0}, extent[2] = {n, what.ncomp};
     const hid_t memory = H5Screate_simple(what.ncomp > 1 ? 2 : 1, extent, NULL);
     const hid_t space = H5Dget_space(t->set[k]);
-    if (n) {
-        snapshot_rows(t->w, &what, row, n);
-        H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, extent, NULL);
-    } else {
-        H5Sselect_none(space);
-        H5Sselect_none(memory);
-    }
-    const int status =
-        H5Dwrite(t->set[k], what.type, memory, space, t->transfer, t->w->slab) < 0 ? failed(t) : 0;
-    H5Sclose(space);
-    H5Sclose(memory);
+    int status = 0;
+    snapshot_rows(t->w, &what, row, n);
+    if (memory < 0 || space < 0 ||
+        H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, extent, NULL) < 0 ||
+        H5Dwrite(t->set[k], what.type, memory, space, t->transfer, t->w->slab) < 0)
+        status = failed(t);
+    if (space >= 0)
+        H5Sclose(space);
+    if (memory >= 0)
+        H5Sclose(memory);
     return status;
 }
 
 static int write_all(const struct together *t)
 {
-    int status = 0;
+    const size_t mine = t->w->parts.rows[t->w->parts.mine];
     for (size_t k = 0; k < t->n_set; k++)
-        for (size_t row = 0; row < t->most; row += SNAPSHOT_SLAB)
-            if (write_slab(t, k, row))
-                status = -1;
-    return status;
+        for (size_t row = 0; row < mine; row += SNAPSHOT_SLAB) {
+            const size_t left = mine - row;
+            if (write_slab(t, k, row, left < SNAPSHOT_SLAB ? left : SNAPSHOT_SLAB))
+                return -1;
+        }
+    return 0;
 }
 
 static int fill(struct writer *w, const char *path)
@@ -87,10 +86,8 @@ static int fill(struct writer *w, const char *path)
     t.set = malloc(t.n_set * sizeof *t.set);
     for (size_t k = 0; t.set && k < t.n_set; k++)
         t.set[k] = -1;
-    for (size_t k = 0; k < w->parts.n; k++) {
-        t.first += k < w->parts.mine ? w->parts.rows[k] : 0;
-        t.most = w->parts.rows[k] > t.most ? w->parts.rows[k] : t.most;
-    }
+    for (size_t k = 0; k < w->parts.mine; k++)
+        t.first += w->parts.rows[k];
     int status =
         ranks_agree(t.set ? 0 : error_memory(w->e, "a snapshot", t.n_set * sizeof *t.set), w->e);
     if (!status) {

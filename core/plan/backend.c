@@ -28,7 +28,8 @@ int backend_decide(struct plan *plan, struct error *e)
         if (plan->scene->device.only)
             return error_set(e, EXIT_USAGE,
                              "--device-only: %s, so that this scene can not run on a device", why);
-        fprintf(stderr, "sph: %s: the scene runs on the processor\n", why);
+        if (plan->registry->rank == 0)
+            fprintf(stderr, "sph: %s: the scene runs on the processor\n", why);
         plan->on_device = false;
     }
     return 0;

@@ -80,7 +80,7 @@ static void host_log(const sph_host *host, int32_t level, const char *message)
     const struct registry *r = registry_of(host);
     char text[1024];
 
-    if (!r || !message || level > r->log_level)
+    if (!r || !message || level > r->log_level || (r->rank > 0 && level > SPH_LOG_ERROR))
         return;
     if (level < SPH_LOG_ERROR || level > SPH_LOG_DEBUG)
         level = SPH_LOG_INFO;

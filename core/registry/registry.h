@@ -54,7 +54,8 @@ struct registry {
     struct entry *entry;
     size_t n_entry;
     sph_host host;
-    int log_level;     /* messages of plugins above it are dropped; others go to stderr */
+    int log_level; /* messages of plugins above it are dropped; others go to stderr */
+    int rank; /* of several: on others than the first all but errors are dropped, as that one says the same */
     struct error last; /* the sentence of the last host->fail, per thread-safe lock inside */
     void *lock;        /* private */
 };

@@ -104,7 +104,9 @@ int run_domain_open(struct run *r, struct error *e)
         wire_close(wire);
         return status;
     }
-    if (ranks_agree(shared(&r->domain, r->plan, e), e)) {
+    const int status = ranks_agree(shared(&r->domain, r->plan, e), e);
+    if (status) {
+        run_domain_close(r);
         wire_close(wire);
         return -1;
     }

@@ -270,29 +270,46 @@ static void tell_device(const struct loop *l, struct error *e)
                   e->text, (unsigned long long)l->checkpointed);
 }
 
-/* Whether all ranks have begun; and whether they stand at the same step, so that their particles make a state. */
+/* Of several ranks any may fail by itself: what may be gone on from. A run that has gone wrong would do so again. */
+static void tell_checkpoint(const struct loop *l, struct error *e)
+{
+    if (l->run.domain && e->text[0] && l->checkpointed != UINT64_MAX &&
+        !(l->run.watch && l->run.watch->failure.happened) && !strstr(e->text, "--resume"))
+        error_set(e, (enum exit_code)e->exit_code,
+                  "%s; the last checkpoint is of step %llu: --resume latest goes on from there",
+                  e->text, (unsigned long long)l->checkpointed);
+}
+
+/* Whether all ranks have begun; whether they stand at the same step, with their particles in hand, so that those make
+ * a state; and whether one is worth keeping. */
 static bool can_keep(struct loop *l)
 {
-    static const uint32_t op[3] = {SPH_REDUCE_MAX, SPH_REDUCE_MAX, SPH_REDUCE_MIN};
+    static const uint32_t op[5] = {SPH_REDUCE_MAX, SPH_REDUCE_MAX, SPH_REDUCE_MIN, SPH_REDUCE_MAX,
+                                   SPH_REDUCE_MAX};
     const double step = (double)l->run.step;
-    double value[3] = {l->refused ? 1.0 : 0.0, step, step};
+    const bool happened = l->run.watch && l->run.watch->failure.happened;
+    bool lost;
+    run_device_failed(&l->run, &lost);
+    double value[5] = {l->refused ? 1.0 : 0.0, step, step, lost ? 1.0 : 0.0, happened ? 1.0 : 0.0};
     struct error ignored = {0};
-    if (run_share_numbers(&l->run, value, op, 3, &ignored) || value[0] > 0.0)
+    if (run_domain_agree(&l->run, run_share_numbers(&l->run, value, op, 5, &ignored), &ignored) ||
+        value[0] > 0.0)
         return false;
-    l->apart = value[1] > value[2];
+    l->apart = value[1] > value[2] || value[3] > 0.0;
+    l->worth = value[1] > 0.0 || value[4] > 0.0;
     return true;
 }
 
 /* Keeps the state in which the run failed; its own failures are not worth a second sentence. */
-static void keep_failed(struct loop *l, const struct error *e)
+static void keep_failed(struct loop *l, struct error *e)
 {
     struct error ignored = {0};
-    bool lost;
-    run_device_failed(&l->run, &lost);
-    watch_share_failure(&l->run, &ignored);
-    if (lost || l->apart) {
+    run_domain_agree(&l->run, watch_share_failure(&l->run, &ignored), &ignored);
+    ignored = (struct error){0};
+    tell_checkpoint(l, e);
+    if (l->apart) {
         /* The columns here are of different times. */
-    } else if (l->run.step > 0 || (l->run.watch && l->run.watch->failure.happened)) {
+    } else if (l->worth) {
         run_domain_agree(&l->run, loop_snapshot(l, &ignored), &ignored);
         ignored = (struct error){0};
         run_domain_agree(&l->run, loop_checkpoint_failed(l, e->text, &ignored), &ignored);
@@ -332,7 +349,8 @@ int loop_run(struct plan *plan, const struct output *out, const struct loop_opti
     if (!status)
         status = run_domain_agree(&l.run, tell(&l, e), e);
     if (status && l.run.plan && can_keep(&l)) {
-        tell_device(&l, e);
+        if (!l.run.domain) /* else its rank has said it */
+            tell_device(&l, e);
         keep_failed(&l, e);
     }
     struct error ignored = {0};

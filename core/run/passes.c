@@ -184,6 +184,9 @@ static int sweep(struct run *r, struct pass *p, const struct ranges *ranges, str
         return -1;
     if ((p->shape == SPH_PAIR && run_frame(r, p->frame, e)) || refresh_all(r, p, e))
         return -1;
+    /* What arrives is no doing of the pass. */
+    if (r->audit && run_domain_waits(r) && pass_arrive(r, p, e))
+        return -1;
     audit_begin(r, p);
     int status = run_chunks(r, p, ranges, e);
     if (audit_end(r, p, status ? NULL : e))

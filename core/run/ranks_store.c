@@ -59,7 +59,7 @@ static int particles_put(struct run *r, size_t array, bool failed, struct store 
     int status = particles_store(p, s, e);
     store_leave(s);
     p->n_ghost = ghosts;
-    if (!status && !failed && frame_has(r, 0, array)) {
+    if (!status && !failed && !r->device && frame_has(r, 0, array)) {
         const size_t k = kept_of(r, array);
         store_enter(s, "kept", k);
         status = skin_store(&r->kept[k], s, e);
@@ -220,7 +220,7 @@ static int rows_restore(struct reading *q, size_t array, const uint64_t *count, 
             store_enter(q->s, "array", array);
             status = particles_restore(&r->plan->array[array].p, q->s, at, first, n, e);
             store_leave(q->s);
-            if (!status && r->lists_made && frame_has(r, 0, array))
+            if (!status && r->lists_made && !r->device && frame_has(r, 0, array))
                 status = kept_restore(q, array, at, first, n, e);
         }
         leave_rank(q->s, k);

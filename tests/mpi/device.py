@@ -1,9 +1,10 @@
 """Runs on several ranks, each with an OpenCL device, against the same runs on the processor on one rank: to rounding,
 whoever holds which particle, whatever the domain's sides are, with several arrays and with neighbours looked for in
 other places; which device a rank takes; programs built once for all ranks; one device that fails ends all, with its
-own sentence. Norm: root of the sum of squares over all particles and components of a column, of the difference over
+own sentence. `make check-long' (tests/mpi/device-long.py) has it all. Norm: root of the sum of squares over all particles and components of a column, of the difference over
 the processor's."""
 import glob
+import json
 import os
 import sys
 import tempfile
@@ -15,6 +16,7 @@ from boxes import box
 from scenes import SPH
 
 BUILD = os.path.abspath(os.environ["top_builddir"])
+LONG = "SPH_DEVICE_LONG" in os.environ
 ON = ("--device", "opencl", "--device-only")
 BARS = {"double": 1e-11, "mixed": 1e-4}
 # What a stiff equation of state, or a weak force, makes of rounding (tests/device.py).
@@ -60,9 +62,8 @@ class Ranks:
         return Snapshot(sorted(glob.glob(os.path.join(self.out, "snapshot_*")))[-1])
 
     def summary(self):
-        from json import load
         with open(os.path.join(self.out, "summary.json")) as file:
-            return load(file)
+            return json.load(file)
 
 
 def compare(what, here, there, bar):
@@ -108,22 +109,23 @@ framed["scheme"]["edit"].append({"insert": "turn", "at": "finish"})
 # More ranks than some arrays have particles; one has none for a while.
 lone = quiet(example("orbit.json"))
 
-# name: scene, ranks, steps, precisions
+# name: scene, ranks, steps, precisions; mixed on one number of ranks where time is short
 CASES = {
     "noh": (noh, (2, 3), 60, ("double",)),
     "drop": (drop, (2, 3), 60, ("double",)),
     "periodic 3D": (box(3, 12, "wcsph", "periodic"), (2, 3), 40, ("double",)),
-    "two arrays, periodic and mirror": (halves, (2, 3), 60, ("double", "mixed")),
+    "two arrays, periodic and mirror": (halves, (2, 3), 30, ("double", "mixed")),
     "frames": (framed, (3,), 40, ("double",)),
     "a lone particle": (lone, (3,), 20, ("double",)),
 }
 for name, (scene, ranks, steps, precisions) in CASES.items():
     # The domain is cut anew whenever particles are sorted.
     scene = changed(scene, ranks={"imbalance": 1.0})
+    precisions = ("double", "mixed") if LONG and name != "a lone particle" else precisions
     for precision in precisions if part(name) else ():
         options = ("--precision", precision, "--steps", str(steps))
         there = scenes.good(scene, *options)
-        for n in ranks:
+        for n in (2, 3, 4, 7) if LONG else ranks if precision == "double" else ranks[:1]:
             here = Ranks(scene, n, *options, *ON).good(name)
             compare(f"{name}, {precision}, {n} ranks", here.last(), there.last(), BARS[precision])
             device = here.summary()["device"]
@@ -144,7 +146,7 @@ if part("device"):
 
 # -- Programs are built once ------------------------------------------------------------------------------------
 
-if part("cold"):
+if LONG and part("cold"):
     with tempfile.TemporaryDirectory() as cold:
         os.mkdir(os.path.join(cold, "drivers"))
         env = {"SPH_CACHE_DIR": os.path.join(cold, "programs"), "POCL_CACHE_DIR": os.path.join(cold, "drivers")}

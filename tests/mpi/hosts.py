@@ -9,7 +9,7 @@ import subprocess
 import sys
 import time
 
-from launch import BOUND, MPIRUN, SPH, Job, Scenes, Snapshot, changed, example, need, wrapper
+from launch import BOUND, SPH, Job, Scenes, Snapshot, changed, example, gone, need, wrapper
 
 need()
 scenes = Scenes()
@@ -159,7 +159,7 @@ if 1 in ranks:
     run.end(BOUND)
     print(f"a rank killed on another host: exit code {run.returncode}, {run.seconds:.1f} s")
     expect("a rank killed on another host: all end", run.returncode not in (0, None) and run.seconds < BOUND, run.stderr)
-    left = [pid for pid in ranks.values() if os.path.exists(f"/proc/{pid}") and "sph" in os.readlink(f"/proc/{pid}/exe")]
+    left = gone(ranks, run.begin + BOUND)
     expect("a rank killed on another host: none is left", not left, left)
 else:
     run.end(1)

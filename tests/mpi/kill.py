@@ -11,7 +11,7 @@ import time
 
 import h5py
 
-from launch import BOUND, SPH, Job, Scenes, Snapshot, need
+from launch import BOUND, SPH, Job, Scenes, Snapshot, gone, need
 
 need()
 scenes = Scenes()
@@ -104,21 +104,6 @@ def kill(job, out, what, whom=None):
         expect(f"{what}: no rank is left", not left, left)
     expect(f"{what}: nothing is torn", not torn(out), torn(out))
     return killed
-
-
-def running(pid):
-    try:
-        with open(f"/proc/{pid}/stat") as file:
-            return file.read().rsplit(")", 1)[1].split()[0] != "Z"
-    except OSError:
-        return False
-
-
-def gone(ranks, until):
-    """Waits for their ends; those that are left."""
-    while any(running(pid) for pid in ranks.values()) and time.monotonic() < until:
-        time.sleep(0.01)
-    return [pid for pid in ranks.values() if running(pid)]
 
 
 def goes_on(what, out, ranks):

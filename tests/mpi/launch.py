@@ -97,3 +97,18 @@ def descendants(pid):
         found += more
         todo += more
     return found
+
+
+def running(pid):
+    try:
+        with open(f"/proc/{pid}/stat") as file:
+            return file.read().rsplit(")", 1)[1].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def gone(ranks, until):
+    """Waits for their ends; those that are left."""
+    while any(running(pid) for pid in ranks.values()) and time.monotonic() < until:
+        time.sleep(0.01)
+    return [pid for pid in ranks.values() if running(pid)]

@@ -53,8 +53,9 @@ static void pack_column(const struct halo_part *p, const struct box *box, int di
         if (c->low)
             copy((char *)(to.low + q * n), (const char *)(c->low + q * c->plane), sizeof(float),
                  p->send, n);
-        for (size_t k = 0; column_is_real(c) && k < n; k++)
-            if (p->image[k])
+        const unsigned changing = column_is_real(c) ? sides_changing(box, dim, c, q) : 0;
+        for (size_t k = 0; changing && k < n; k++)
+            if (p->image[k] & changing)
                 column_set(&to, q, k,
                            sides_value(box, dim, c, q, p->image[k], column_get(c, q, p->send[k])));
     }

@@ -368,24 +368,40 @@ double sides_value(const struct box *box, int dim, const struct column *c, uint3
     return turn(value, code & turning_of(box, dim, c, k));
 }
 
-/* Component k of a real column; what an image is: a position shifts, a direction turns. */
+unsigned sides_changing(const struct box *box, int dim, const struct column *c, uint32_t k)
+{
+    return strcmp(c->name, "x") == 0 ? 3u << 2 * k : turning_of(box, dim, c, k);
+}
+
+static void copy_parents(char *plane, size_t size, const struct ghosts *g, size_t n)
+{
+    if (size == sizeof(double)) {
+        for (size_t q = 0; q < g->n; q++) {
+            memcpy(plane + 8 * (n + q), plane + 8 * (size_t)g->parent[q], 8);
+        }
+    } else {
+        for (size_t q = 0; q < g->n; q++) {
+            memcpy(plane + 4 * (n + q), plane + 4 * (size_t)g->parent[q], 4);
+        }
+    }
+}
+
+/* Component k of a real column; what an image is: a position shifts, a direction turns. Most are as their
+ * parents are. */
 static void refresh_real(const struct ghosts *g, const struct box *box, struct particles *p,
                          const struct column *c, uint32_t k)
 {
-    bool position = strcmp(c->name, "x") == 0;
-    unsigned turning = position ? 0 : turning_of(box, p->dim, c, k);
+    const unsigned changing = sides_changing(box, p->dim, c, k);
 
-    for (size_t q = 0; q < g->n; q++) {
-        double value = column_get(c, k, g->parent[q]);
-        unsigned image = g->image[q];
-
-        if (position) {
-            image = image >> 2 * k & 3u;
-            value = image ? sides_image(box, (int)k, image, value) : value;
-        } else if (image & turning) {
-            value = turn(value, image & turning);
+    copy_parents((char *)c->data + k * c->plane * c->size, c->size, g, p->n);
+    if (c->low) {
+        copy_parents((char *)(c->low + k * c->plane), sizeof *c->low, g, p->n);
+    }
+    for (size_t q = 0; changing && q < g->n; q++) {
+        if (g->image[q] & changing) {
+            column_set(c, k, p->n + q,
+                       sides_value(box, p->dim, c, k, g->image[q], column_get(c, k, g->parent[q])));
         }
-        column_set(c, k, p->n + q, value);
     }
 }
 

@@ -72,6 +72,8 @@ int sides_check_width(const struct box *box, int axis, double margin, const char
 bool sides_has_image(const struct box *box, int axis, unsigned image);
 /* A coordinate as it is there. */
 double sides_image(const struct box *box, int axis, unsigned image, double x);
+/* The bits of codes by which component k of a real column is another in an image. */
+unsigned sides_changing(const struct box *box, int dim, const struct column *c, uint32_t k);
 /* Component k of a real column's value as it is in an image with that code. */
 double sides_value(const struct box *box, int dim, const struct column *c, uint32_t k,
                    unsigned code, double value);

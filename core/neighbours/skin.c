@@ -201,16 +201,23 @@ size_t skin_bytes(const struct skin *s)
 
 /* What is now against what was, of n particles of a block. */
 SKIN_INLINE struct skin_change exact_change(const double *was, const struct cloud *c, size_t first,
-                                            size_t n, double relative)
+                                            size_t n, double relative, int dim, bool fixed)
 {
+    const double *x[3], *h = fixed ? NULL : c->h + first, *was_h = was + (size_t)dim * BLOCK;
     double most = 0, room = INFINITY, none = 0;
 
+    for (int a = 0; a < 3; a++) {
+        x[a] = a < dim ? c->x[a] + first : NULL;
+    }
+#ifndef __clang__ /* which says that it cannot, and would do so as a warning */
+#pragma omp simd reduction(max : most) reduction(min : room) reduction(+ : none)
+#endif
     for (size_t k = 0; k < n; k++) {
-        double h = was[(size_t)c->dim * BLOCK + k], r2 = 0;
-        double left = (1 + relative) * h - (c->h ? c->h[first + k] : h);
+        double left = (1 + relative) * was_h[k] - (fixed ? was_h[k] : h[k]), r2 = 0;
 
-        for (int a = 0; a < c->dim; a++) {
-            double d = c->x[a][first + k] - was[(size_t)a * BLOCK + k];
+#pragma GCC unroll 3
+        for (int a = 0; a < dim; a++) {
+            double d = x[a][k] - was[(size_t)a * BLOCK + k];
 
             r2 += d * d;
         }
@@ -219,6 +226,13 @@ SKIN_INLINE struct skin_change exact_change(const double *was, const struct clou
         none += (r2 + left) * 0;
     }
     return (struct skin_change){sqrt(most) + none, room * c->scale};
+}
+
+SKIN_INLINE struct skin_change exact_in(const double *was, const struct cloud *c, size_t first,
+                                        size_t n, double relative, int dim)
+{
+    return c->h ? exact_change(was, c, first, n, relative, dim, false)
+                : exact_change(was, c, first, n, relative, dim, true);
 }
 
 /* The same where the places are kept in codes; h are taken a little less than they were. */
@@ -276,7 +290,11 @@ SKIN_INLINE struct skin_change block_change(const struct skin *s, size_t at, con
     const uint16_t *code = s->code + at * codes_of(s);
 
     if (b->exact != EXACT_NO) {
-        return exact_change(s->exact + b->exact * columns * BLOCK, c, first, n, relative);
+        const double *was = s->exact + b->exact * columns * BLOCK;
+
+        return c->dim == 1   ? exact_in(was, c, first, n, relative, 1)
+               : c->dim == 2 ? exact_in(was, c, first, n, relative, 2)
+                             : exact_in(was, c, first, n, relative, 3);
     }
 #define CODED(dim) coded_in(b, code, c, first, n, relative, dim, s->even)
     return s->dim == 1 ? CODED(1) : s->dim == 2 ? CODED(2) : CODED(3);

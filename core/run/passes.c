@@ -128,26 +128,65 @@ static int refresh_all(struct run *r, const struct pass *p, struct error *e)
     return p->shape == SPH_PAIR ? mirrors(r, p, e) : 0;
 }
 
+/* Groups in between those that wait, if they are as few as this, wait as well: short ranges cost more than they
+ * save. */
+#define GAP 8
+
+/* Which groups wait for what is on its way. */
+static bool *find_late(const struct run *r, const struct pass *p, size_t n, struct error *e)
+{
+    bool *late = malloc((n + 1) * sizeof *late);
+    size_t gap = GAP;
+    if (!late) {
+        error_memory(e, "ranges", n);
+        return NULL;
+    }
+    for (size_t g = 0; g < n; g++) {
+        late[g] = run_domain_far(r, p, g);
+        for (size_t k = 1; late[g] && gap < GAP && k <= gap; k++)
+            late[g - k] = true;
+        gap = late[g] ? 0 : gap + 1;
+    }
+    return late;
+}
+
+/* Appends; what goes on from the range before joins it, up to a chunk. */
+static int ranges_join(struct ranges *a, size_t begin, uint64_t first, uint64_t count,
+                       struct error *e)
+{
+    const bool joins = a->n > begin && a->first[a->n - 1] + a->count[a->n - 1] == first &&
+                       a->count[a->n - 1] + count <= CHUNK;
+    if (!joins)
+        return ranges_add(a, first, count, e);
+    a->count[a->n - 1] += count;
+    return 0;
+}
+
 /* Of the ranges those first that need nothing of what is on its way. */
 static int ranges_part(const struct run *r, const struct pass *p, const struct ranges *all,
                        struct ranges *parted, struct error *e)
 {
-    for (int far = 0; far < 2; far++) {
+    const size_t n = (r->plan->array[p->dst.array].p.n + SPH_LANES - 1) / SPH_LANES;
+    bool *late = find_late(r, p, n, e);
+    int status = late ? 0 : -1;
+    for (int far = 0; !status && far < 2; far++) {
+        const size_t begin = parted->n;
         for (size_t k = 0; k < all->n; k++) {
             const uint64_t end = all->first[k] + all->count[k];
-            for (uint64_t at = all->first[k], next = at; at < end; at = next) {
-                const bool is = run_domain_far(r, p, at / SPH_LANES);
+            for (uint64_t at = all->first[k], next = at; !status && at < end; at = next) {
+                const bool is = late[at / SPH_LANES];
                 do
                     next += SPH_LANES;
-                while (next < end && run_domain_far(r, p, next / SPH_LANES) == is);
+                while (next < end && late[next / SPH_LANES] == is);
                 next = next < end ? next : end;
-                if (is == far && ranges_add(parted, at, next - at, e))
-                    return -1;
+                if (is == far)
+                    status = ranges_join(parted, begin, at, next - at, e);
             }
         }
         parted->near = far ? parted->near : parted->n;
     }
-    return 0;
+    free(late);
+    return status;
 }
 
 /* While messages are on their way, if the pass can go on without. */
@@ -279,7 +318,9 @@ static bool waits_to_be_shared(const struct run *r, const struct reduction *d, e
 static bool may_ask(const struct run *r, enum moment moment, size_t first, size_t pass)
 {
     const struct pass *p = &r->plan->pass[pass];
-    for (size_t i = 0; r->domain && p->function && i < r->plan->n_reduction; i++) {
+    if (!r->domain || !r->plan->registry->asked_reductions)
+        return false;
+    for (size_t i = 0; p->function && i < r->plan->n_reduction; i++) {
         const struct reduction *d = &r->plan->reduction[i];
         if (waits_to_be_shared(r, d, moment, first, pass) &&
             r->plan->pass[d->pass].function != p->function)
@@ -289,14 +330,14 @@ static bool may_ask(const struct run *r, enum moment moment, size_t first, size_
 }
 
 /* Those of passes [first, end) of a moment, of all ranks; behind the last of an evaluation also whether any rate may
- * be none. */
+ * be none, and whether any rank has been asked to stop. */
 static int share_reduced(struct run *r, enum moment moment, size_t first, size_t end,
                          struct error *e)
 {
     const size_t n = r->plan->n_reduction;
     const bool last = end == r->plan->n_pass && moment == MOMENT_EVALUATE;
-    double *value = malloc((n + 1) * sizeof *value);
-    uint32_t *op = malloc((n + 1) * sizeof *op);
+    double *value = malloc((n + 2) * sizeof *value);
+    uint32_t *op = malloc((n + 2) * sizeof *op);
     int status = value && op ? 0 : error_memory(e, "reductions", n * sizeof *value);
     size_t used = 0, k = 0;
     for (size_t i = 0; !status && i < n; i++)
@@ -306,15 +347,18 @@ static int share_reduced(struct run *r, enum moment moment, size_t first, size_t
         }
     if (!status && last) {
         value[used] = r->suspect ? 1.0 : 0.0;
-        op[used] = SPH_REDUCE_MAX;
+        value[used + 1] = r->stop && *r->stop ? 1.0 : 0.0;
+        op[used] = op[used + 1] = SPH_REDUCE_MAX;
     }
     if (!status)
-        status = run_share_numbers(r, value, op, used + last, e);
+        status = run_share_numbers(r, value, op, used + (last ? 2 : 0), e);
     for (size_t i = 0; !status && i < n; i++)
         if (waits_to_be_shared(r, &r->plan->reduction[i], moment, first, end))
             r->reduced[i] = value[k++];
-    if (!status && last)
+    if (!status && last) {
         r->suspect = value[used] > 0.0;
+        r->stopped = value[used + 1] > 0.0;
+    }
     free(op);
     free(value);
     return status;

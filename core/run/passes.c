@@ -197,8 +197,13 @@ static int run_chunks(struct run *r, struct pass *p, const struct ranges *all, s
     if (!waits || !p->local || p->shape != SPH_PAIR)
         return (waits && pass_arrive(r, p, e)) || chunks_run(r, p, all, e) ? -1 : 0;
     int status = ranges_part(r, p, all, &parted, e);
+    /* Many short ranges cost more than waiting does. */
+    const bool short_ones = parted.n > 2 * all->n + 8;
     if (!status)
-        status = chunks_run(r, p, &parted, e);
+        status =
+            (short_ones && pass_arrive(r, p, e)) || chunks_run(r, p, short_ones ? all : &parted, e)
+                ? -1
+                : 0;
     ranges_free(&parted);
     return !status && run_domain_waits(r) ? pass_arrive(r, p, e) : status;
 }

@@ -18,7 +18,8 @@ static int shared(struct run_domain **out, const struct plan *plan, struct error
     d->cloud = calloc(plan->n_frame * n + 1, sizeof *d->cloud);
     d->far = calloc(plan->n_list + 1, sizeof *d->far);
     d->far_capacity = calloc(plan->n_list + 1, sizeof *d->far_capacity);
-    if (!d->want || !d->cloud || !d->far || !d->far_capacity)
+    d->met = calloc(plan->n_frame * n + 1, sizeof *d->met);
+    if (!d->want || !d->cloud || !d->met || !d->far || !d->far_capacity)
         return error_memory(e, "the domain", n * plan->n_frame * sizeof *d->cloud);
     for (size_t k = 0; k < plan->n_list; k++) {
         const struct plan_list *l = &plan->list[k];
@@ -129,6 +130,9 @@ void run_domain_close(struct run *r)
     wire_close(d->wire);
     free(d->want);
     free(d->cloud);
+    for (size_t k = 0; d->met && k < r->plan->n_frame * r->plan->n_array; k++)
+        skin_fini(&d->met[k]);
+    free(d->met);
     for (size_t k = 0; d->far && k < r->plan->n_list; k++)
         free(d->far[k]);
     free(d->far);
@@ -382,6 +386,23 @@ int run_domain_ghosts(struct run *r, struct error *e)
     if (run_domain_begin(r, e) || run_domain_finish(r, e))
         return -1;
     add_sent(d, &d->for_ghosts, &before);
+    return 0;
+}
+
+int run_domain_keep(struct run *r, struct error *e)
+{
+    struct run_domain *d = r->domain;
+    for (size_t f = 1; d && f < r->plan->n_frame; f++) {
+        struct skin *met = d->met + f * r->plan->n_array;
+        for (size_t a = 0; a < r->plan->n_array; a++) {
+            if (!frame_has(r, f, a))
+                continue;
+            const struct cloud here = run_cloud(r, a, f);
+            met->exactly = true;
+            if (skin_keep(met++, &here, r->threads, e))
+                return -1;
+        }
+    }
     return 0;
 }
 

@@ -16,9 +16,10 @@ struct run_domain {
     size_t n_want;
     struct cloud *cloud; /* [frame * n_array + array] */
     struct halo_column *column;
-    size_t n_column; /* of the exchange under way */
-    bool waits;      /* it has begun */
-    bool **far;      /* [list][group] */
+    size_t n_column;  /* of the exchange under way */
+    struct skin *met; /* [frame * n_array + array]: other frames' places when the halo was made */
+    bool waits;       /* it has begun */
+    bool **far;       /* [list][group] */
     size_t *far_capacity;
     int *owner; /* room for as many particles as one asks for at once */
     float *weight;
@@ -53,6 +54,8 @@ int run_domain_meet(struct run *r, struct error *e);
 /* What this rank's share costs, in pairs: those of its lists for each sweep of an evaluation that walks them, and
  * something for each particle. */
 int run_domain_cost(struct run *r, double *cost, struct error *e);
+/* After ghosts have been made: keeps where particles stood in other frames than that of positions. */
+int run_domain_keep(struct run *r, struct error *e);
 /* Columns that ghosts need anew, of any arrays: asked for one by one, then exchanged at once. */
 int run_domain_ask(struct run *r, size_t array, int column, struct error *e);
 int run_domain_begin(struct run *r, struct error *e);

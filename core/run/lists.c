@@ -148,16 +148,18 @@ static struct skin_change change_in_quanta(const struct run *r, size_t array)
     return (struct skin_change){moved + none, room};
 }
 
-static int holds(const struct run *r, size_t frame, bool *yes, struct error *e)
+/* kept_all: places of a frame when its lists were made, or when something else was. */
+static int holds(const struct run *r, const struct skin *kept_all, size_t frame, bool *yes,
+                 struct error *e)
 {
-    const struct skin *kept = r->kept + frame * r->plan->n_array;
+    const struct skin *kept = kept_all + frame * r->plan->n_array;
     struct skin_change all = {0.0, INFINITY};
     for (size_t a = 0; a < r->plan->n_array; a++) {
         if (!frame_has(r, frame, a))
             continue;
         const struct plan_array *pa = &r->plan->array[a];
         const struct cloud cloud = cloud_of(r, a, frame, false);
-        const struct skin_change here = pa->p.column[pa->position].quantum > 0.0
+        const struct skin_change here = frame == 0 && pa->p.column[pa->position].quantum > 0.0
                                             ? change_in_quanta(r, a)
                                             : skin_change(kept, &cloud, r->skin, r->threads);
         kept++;
@@ -275,6 +277,8 @@ static int make_ghosts(struct run *r, struct error *e)
                 return watch_too_wide(r, e);
     if (r->domain ? run_domain_ghosts(r, e) : make_images(r, margin, e))
         return -1;
+    if (run_domain_keep(r, e))
+        return -1;
     for (size_t a = 0; a < r->plan->n_array; a++) {
         for (size_t c = 0; c < r->plan->array[a].p.n_column; c++)
             run_changed(r, a, (int)c);
@@ -341,7 +345,7 @@ static int make_lists(struct run *r, bool sorted, struct error *e)
         return -1;
     if (find_range_of_h(r, e) || make_ghosts(r, e) || widen_h(r, e) || make_visits(r, e))
         return -1;
-    if (sorted || !r->lists_made)
+    if (sorted || !r->lists_made || r->domain) /* ghosts of others stand elsewhere now */
         memset(r->frame_made, false, r->plan->n_frame);
     return make_frame(r, 0, sorted, e);
 }
@@ -364,17 +368,38 @@ static void freeze(struct run *r, size_t frame)
     r->frozen[frame] = true;
 }
 
+/* Lists and ghosts anew; sort: particles are put in order before, and go to their ranks. */
+static int renew(struct run *r, bool within, bool sort, struct error *e);
+
+/* Others' particles that a frame's lists need are among the ghosts, and stand where they do there. */
+static int meet_again(struct run *r, size_t frame, struct error *e)
+{
+    bool right = false;
+    if (!r->domain)
+        return 0;
+    if (holds(r, r->domain->met, frame, &right, e) ||
+        (!right && (renew(r, true, false, e) || narrow_places(r, e))))
+        return -1;
+    for (size_t a = 0; a < r->plan->n_array; a++)
+        if (frame_has(r, frame, a) && (run_refresh(r, a, frame_place(r, frame, a), e) ||
+                                       run_refresh(r, a, frame_reach(r, frame, a), e)))
+            return -1;
+    return 0;
+}
+
 int run_frame(struct run *r, size_t frame, struct error *e)
 {
     const bool frozen = r->plan->frame[frame].frozen;
     const double begin = omp_get_wtime();
     bool made = frame == 0 || (r->frame_made[frame] && frozen);
-    if (!made && r->frame_made[frame] && holds(r, frame, &made, e))
+    if (!made && r->frame_made[frame] && holds(r, r->kept, frame, &made, e))
         return -1;
     if (made)
         return 0;
     if (frozen && !r->frozen[frame])
         freeze(r, frame);
+    if (meet_again(r, frame, e))
+        return -1;
     const int status = make_frame(r, frame, true, e);
     r->frame_made[frame] = !status;
     r->cost.list_builds++;
@@ -382,7 +407,6 @@ int run_frame(struct run *r, size_t frame, struct error *e)
     return status;
 }
 
-/* Lists and ghosts anew; sort: particles are put in order before, and go to their ranks. */
 static int renew(struct run *r, bool within, bool sort, struct error *e)
 {
     int status = watch_places(r, true, e);
@@ -416,7 +440,7 @@ int run_lists(struct run *r, bool within, struct error *e)
     }
     double begin = omp_get_wtime();
     bool made = false;
-    int status = r->lists_made ? holds(r, 0, &made, e) : 0;
+    int status = r->lists_made ? holds(r, r->kept, 0, &made, e) : 0;
     if (!status && !made) {
         const bool first = !within && !r->lists_made && r->cost.list_builds == 0;
         const bool sort = !within && (!r->lists_made || ++r->builds_since_sort >= BUILDS_PER_SORT);

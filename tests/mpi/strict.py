@@ -2,6 +2,7 @@
 however often the domain is cut anew; within 1e-12 of the largest value otherwise, in double. Whole scenes, and where
 a domain manager goes wrong first: ranks without particles, a rank with one, all of them in a corner, particles that
 cross the whole domain, a fast blow through the cuts. Nowhere do the cuts show."""
+import os
 import sys
 
 import numpy
@@ -102,6 +103,14 @@ if part("box"):
 if part("base"):
     same("Noh without vectors of destinations", changed(NOH, precision="double"), "--until", "0.1", "--path", "base",
          ranks=(3,))
+
+FRAMES = changed(NOH, title="sums over other places", precision="double", time={"end": 0.1})
+FRAMES["plugins"].append(os.path.abspath(os.path.join(os.environ["top_builddir"], "tests/opencl/.libs/frames.so")))
+FRAMES["particles"]["fluid"]["fields"].update({"X": ["2*x", "y*y"], "q": "sin(7*x)"})
+FRAMES["scheme"]["edit"] = [{"insert": name} for name in ("followed", "frozen", "mix")]
+FRAMES["scheme"]["edit"].append({"insert": "turn", "at": "finish"})
+if part("frames"):
+    same("neighbours in other places", FRAMES, ranks=(2, 3, 7))
 
 # -- Where a domain manager goes wrong ----------------------------------------------------------------------------------
 

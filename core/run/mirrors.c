@@ -68,13 +68,16 @@ int run_mirror_frame(struct run *r, double margin, struct error *e)
                                    SPH_REDUCE_MAX, SPH_REDUCE_MAX, SPH_REDUCE_MAX};
     const struct box *box = &r->plan->scene->box;
     const struct plan *plan = r->plan;
+    /* Who has which images depends on the ranks: then what can be is taken, not what is. */
+    const bool of_all_images = plan->strict || r->domain;
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
     for (int c = 0; c < plan->dim; c++)
         for (size_t a = 0; a < plan->n_array; a++) {
             const struct plan_array *pa = &plan->array[a];
             const struct column *x = &pa->p.column[pa->position];
             const double *at = (const double *)x->data + (size_t)c * x->plane;
-            for (size_t i = 0; i < pa->p.n; i++) {
+            const size_t n = pa->p.n + (of_all_images ? 0 : pa->p.n_ghost);
+            for (size_t i = 0; i < n; i++) {
                 low[c] = at[i] < low[c] ? at[i] : low[c];
                 high[c] = at[i] > high[c] ? at[i] : high[c];
             }
@@ -83,7 +86,7 @@ int run_mirror_frame(struct run *r, double margin, struct error *e)
     if (run_share_numbers(r, of_all, op, 6, e))
         return -1;
     /* Images stand beyond the sides, no further than they are looked for. */
-    for (int c = 0; c < plan->dim; c++) {
+    for (int c = 0; of_all_images && c < plan->dim; c++) {
         if (box->bounded && sides_has_image(box, c, IMAGE_LOW))
             of_all[c] = fmin(of_all[c], box->min[c] - margin);
         if (box->bounded && sides_has_image(box, c, IMAGE_HIGH))

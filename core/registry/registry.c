@@ -14,8 +14,6 @@
 
 #include <math.h>
 #include <pthread.h>
-#include <sph/reductions.h>
-#include <sph/time_step.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -72,12 +70,7 @@ static sph_status host_fail(const sph_host *host, sph_status status, const char 
 
 static const void *host_extension(const sph_host *host, const char *id)
 {
-    struct registry *r = registry_of(host);
-
-    if (r && id) {
-        r->asked_reductions = r->asked_reductions || strcmp(id, SPH_EXT_REDUCTIONS) == 0;
-        r->asked_time_step = r->asked_time_step || strcmp(id, SPH_EXT_TIME_STEP) == 0;
-    }
+    (void)host;
     return extension_find(id);
 }
 

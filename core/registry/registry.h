@@ -56,8 +56,6 @@ struct registry {
     sph_host host;
     int log_level; /* messages of plugins above it are dropped; others go to stderr */
     int rank; /* of several: on others than the first all but errors are dropped, as that one says the same */
-    /* A plugin has asked for these extensions: its functions may use them. */
-    bool asked_reductions, asked_time_step;
     struct error last; /* the sentence of the last host->fail, per thread-safe lock inside */
     void *lock;        /* private */
 };

@@ -47,18 +47,15 @@ static double target(const struct loop *l)
 #define GROWTH 1.2
 #define FIRST 0.1
 
-/* What ranks may see differently. On the processor the stop signal has come along with the evaluation. */
+/* What ranks may see differently, and at different times. */
 static int share(struct loop *l, struct error *e)
 {
     static const uint32_t op[2] = {SPH_REDUCE_MIN, SPH_REDUCE_MAX};
-    struct run *r = &l->run;
-    double value[2] = {r->proposed, r->stop && *r->stop ? 1.0 : 0.0};
-    if (!r->domain || (!r->device && !r->plan->registry->asked_time_step))
-        return 0;
-    if (run_share_numbers(r, value, op, 2, e))
+    double value[2] = {l->run.proposed, l->options->stop && *l->options->stop ? 1.0 : 0.0};
+    if (run_share_numbers(&l->run, value, op, 2, e))
         return -1;
-    r->proposed = value[0];
-    r->stopped = value[1] > 0.0;
+    l->run.proposed = value[0];
+    l->stopped = value[1] > 0.0;
     return 0;
 }
 
@@ -94,7 +91,7 @@ static int choose_dt(struct loop *l, double *dt, struct error *e)
 /* Ranks stop together: by what they have shared. */
 static bool was_stopped(const struct loop *l)
 {
-    return l->run.domain ? l->run.stopped : l->options->stop && *l->options->stop;
+    return l->run.domain ? l->stopped : l->options->stop && *l->options->stop;
 }
 
 static bool finished(const struct loop *l)
@@ -245,7 +242,6 @@ static int loop_begin(struct loop *l, struct plan *plan, struct error *e)
                                : 0);
     if (l->refused)
         return -1;
-    l->run.stop = l->options->stop;
     progress_start(&l->progress, l->options->progress && run_speaks(&l->run), l->begin, l->end);
     l->progress.started -= omp_get_wtime() - l->started; /* a run that goes on has begun earlier */
     char *path = output_path(l->out, "log.csv");

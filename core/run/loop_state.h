@@ -29,6 +29,7 @@ struct loop {
     double next_log;
     double was_every, was_log_every; /* output.every and output.log.every of the run that goes on */
     double loop_begun, loop_io; /* what cost.loop is measured from: the clock, and cost.io then */
+    bool stopped;               /* some rank has been asked to stop */
     bool apart, worth; /* of a run that failed: there is no state to keep; there is a reason to */
     bool ended;        /* by what was known after the last step: a signal may come at any time */
     bool refused;      /* nothing was begun: nothing is to be kept of it */

@@ -323,9 +323,7 @@ static bool waits_to_be_shared(const struct run *r, const struct reduction *d, e
 static bool may_ask(const struct run *r, enum moment moment, size_t first, size_t pass)
 {
     const struct pass *p = &r->plan->pass[pass];
-    if (!r->domain || !r->plan->registry->asked_reductions)
-        return false;
-    for (size_t i = 0; p->function && i < r->plan->n_reduction; i++) {
+    for (size_t i = 0; r->domain && p->function && i < r->plan->n_reduction; i++) {
         const struct reduction *d = &r->plan->reduction[i];
         if (waits_to_be_shared(r, d, moment, first, pass) &&
             r->plan->pass[d->pass].function != p->function)
@@ -335,14 +333,14 @@ static bool may_ask(const struct run *r, enum moment moment, size_t first, size_
 }
 
 /* Those of passes [first, end) of a moment, of all ranks; behind the last of an evaluation also whether any rate may
- * be none, and whether any rank has been asked to stop. */
+ * be none. */
 static int share_reduced(struct run *r, enum moment moment, size_t first, size_t end,
                          struct error *e)
 {
     const size_t n = r->plan->n_reduction;
     const bool last = end == r->plan->n_pass && moment == MOMENT_EVALUATE;
-    double *value = malloc((n + 2) * sizeof *value);
-    uint32_t *op = malloc((n + 2) * sizeof *op);
+    double *value = malloc((n + 1) * sizeof *value);
+    uint32_t *op = malloc((n + 1) * sizeof *op);
     int status = value && op ? 0 : error_memory(e, "reductions", n * sizeof *value);
     size_t used = 0, k = 0;
     for (size_t i = 0; !status && i < n; i++)
@@ -352,18 +350,15 @@ static int share_reduced(struct run *r, enum moment moment, size_t first, size_t
         }
     if (!status && last) {
         value[used] = r->suspect ? 1.0 : 0.0;
-        value[used + 1] = r->stop && *r->stop ? 1.0 : 0.0;
-        op[used] = op[used + 1] = SPH_REDUCE_MAX;
+        op[used] = SPH_REDUCE_MAX;
     }
     if (!status)
-        status = run_share_numbers(r, value, op, used + (last ? 2 : 0), e);
+        status = run_share_numbers(r, value, op, used + last, e);
     for (size_t i = 0; !status && i < n; i++)
         if (waits_to_be_shared(r, &r->plan->reduction[i], moment, first, end))
             r->reduced[i] = value[k++];
-    if (!status && last) {
+    if (!status && last)
         r->suspect = value[used] > 0.0;
-        r->stopped = value[used + 1] > 0.0;
-    }
     free(op);
     free(value);
     return status;

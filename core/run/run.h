@@ -10,7 +10,6 @@
 #include "plan/plan.h"
 #include "registry/extension.h"
 #include <math.h>
-#include <signal.h>
 
 struct audit;
 struct watch;
@@ -68,8 +67,6 @@ struct run {
     struct watch *watch;       /* watch.h */
     bool look;                 /* all that passes write in this step is looked at: finite.c */
     bool suspect;              /* a rate may be no number */
-    const volatile sig_atomic_t *stop; /* set, it asks for an end after this step; or NULL */
-    bool stopped; /* of several ranks: by the last evaluation some had been asked */
     /* advance.c */
     double correct; /* while a correction follows the evaluation: its factor; else 0 */
     bool defer;     /* the next step may do what is left of this one: run_settle */

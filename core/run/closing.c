@@ -92,7 +92,7 @@ int closing_ask(struct run *r, const struct pass *p, struct error *e)
         return error_memory(e, "a pass", c.n_corrected * sizeof *c.part);
     find_parts(&c, c.part);
     for (size_t k = 0; !status && k < c.n_corrected; k++)
-        status = run_refresh_own(r, p->dst.array, (int)(c.part[k].y - a->p.column), e);
+        status = run_refresh_ask(r, p->dst.array, (int)(c.part[k].y - a->p.column), e);
     free(c.part);
     return status;
 }

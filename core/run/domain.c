@@ -147,7 +147,9 @@ void run_domain_close(struct run *r)
 
 /* -- Balance -------- */
 
-#define POINT 8.0f /* what a particle costs beside its pairs, in pairs */
+/* What a particle costs beside its pairs, and an image of it: in pairs. */
+#define POINT 20.0f
+#define IMAGE 16.0f
 
 /* Sweeps of an evaluation that walk a list. */
 static size_t sweeps_of(const struct plan *plan, size_t list)
@@ -167,6 +169,8 @@ static double weigh(struct run *r, size_t array, float *weight)
     double sum = 0.0;
     for (size_t i = 0; i < n; i++)
         weight[i] = POINT;
+    for (size_t k = 0; r->lists_made && k < r->ghosts[array].n; k++)
+        weight[r->ghosts[array].parent[k]] += IMAGE;
     for (size_t k = 0; r->lists_made && k < plan->n_list; k++) {
         const struct group_list *list = &r->list[k];
         const double each = list->true_share * (double)sweeps_of(plan, k);
@@ -364,24 +368,57 @@ int run_domain_meet(struct run *r, struct error *e)
     return status;
 }
 
-int run_domain_ghosts(struct run *r, struct error *e)
+/* Particles that peers need go behind those that nobody does: most groups without the former need no ghosts of others
+ * either, and stand together (run/passes.c). */
+static int part_sent(struct run *r, size_t array, struct error *e)
+{
+    struct particles *p = &r->plan->array[array].p;
+    const struct halo *h = &r->domain->halo;
+    const struct ghosts *own = &r->ghosts[array];
+    if (halo_sent(h, array) == 0)
+        return 0;
+    uint32_t *order = malloc(2 * p->n * sizeof *order), *place = order + p->n;
+    bool *sent = calloc(p->n, sizeof *sent);
+    int status = order && sent ? 0 : error_memory(e, "the order of particles", p->n);
+    size_t n = 0;
+    for (size_t k = 0; !status && k < h->n_peer; k++)
+        for (size_t i = 0; i < h->peer[k].part[array].n_send; i++)
+            sent[h->peer[k].part[array].send[i]] = true;
+    for (int late = 0; !status && late < 2; late++)
+        for (size_t i = 0; i < p->n; i++)
+            if (sent[i] == late) {
+                place[i] = (uint32_t)n;
+                order[n++] = (uint32_t)i;
+            }
+    if (!status)
+        status = particles_permute(p, order, e);
+    for (size_t k = 0; !status && k < h->n_peer; k++)
+        for (size_t i = 0; i < h->peer[k].part[array].n_send; i++)
+            h->peer[k].part[array].send[i] = place[h->peer[k].part[array].send[i]];
+    for (size_t i = 0; !status && i < own->n; i++)
+        own->parent[i] = place[own->parent[i]];
+    free(order);
+    free(sent);
+    return status;
+}
+
+int run_domain_ghosts(struct run *r, bool sorts, struct error *e)
 {
     struct run_domain *d = r->domain;
     const struct plan *plan = r->plan;
     const size_t n = plan->n_array;
     if (run_domain_meet(r, e))
         return -1;
+    for (size_t a = 0; sorts && a < n; a++)
+        if (part_sent(r, a, e))
+            return -1;
     const struct wire_count before = wire_count(d->wire);
     for (size_t a = 0; a < n; a++) {
         struct plan_array *pa = &plan->array[a];
         if (particles_resize(&pa->p, pa->p.n, d->halo.n_ghost[a], e))
             return -1;
-        const int column[2] = {pa->position, pa->smoothing};
-        for (int k = 0; k < 2; k++) {
-            ghosts_refresh(&r->ghosts[a], &plan->scene->box, &pa->p, column[k]);
-            if (run_domain_ask(r, a, column[k], e))
-                return -1;
-        }
+        if (run_domain_ask(r, a, pa->position, e) || run_domain_ask(r, a, pa->smoothing, e))
+            return -1;
     }
     if (run_domain_begin(r, e) || run_domain_finish(r, e))
         return -1;
@@ -425,7 +462,13 @@ int run_domain_begin(struct run *r, struct error *e)
     if (!d || !d->n_column)
         return 0;
     d->waits = true;
-    return halo_begin(&d->halo, &r->plan->scene->box, d->column, d->n_column, e);
+    if (halo_begin(&d->halo, &r->plan->scene->box, d->column, d->n_column, e))
+        return -1;
+    for (size_t k = 0; k < d->n_column; k++) {
+        run_refresh_images(r, d->column[k].array, d->column[k].column);
+        run_domain_poke(r);
+    }
+    return 0;
 }
 
 int run_domain_finish(struct run *r, struct error *e)

@@ -47,8 +47,8 @@ int run_domain_uneven(struct run *r, bool *uneven, struct error *e);
 /* Particles go to where their places belong. */
 int run_domain_move(struct run *r, struct error *e);
 /* Ghosts of what this rank's lists may reach: room for them, and who they are; of their columns positions and
- * smoothing lengths are right. */
-int run_domain_ghosts(struct run *r, struct error *e);
+ * smoothing lengths are right. sorts: particles have just been put in order, and may be put in another. */
+int run_domain_ghosts(struct run *r, bool sorts, struct error *e);
 /* The first half of it, of what the host's columns hold: who needs whom. */
 int run_domain_meet(struct run *r, struct error *e);
 /* What this rank's share costs, in pairs: those of its lists for each sweep of an evaluation that walks them, and
@@ -56,7 +56,8 @@ int run_domain_meet(struct run *r, struct error *e);
 int run_domain_cost(struct run *r, double *cost, struct error *e);
 /* After ghosts have been made: keeps where particles stood in other frames than that of positions. */
 int run_domain_keep(struct run *r, struct error *e);
-/* Columns that ghosts need anew, of any arrays: asked for one by one, then exchanged at once. */
+/* Columns that ghosts need anew, of any arrays: asked for one by one, then exchanged at once; this rank's own images
+ * get theirs when the messages are on their way. */
 int run_domain_ask(struct run *r, size_t array, int column, struct error *e);
 int run_domain_begin(struct run *r, struct error *e);
 int run_domain_finish(struct run *r, struct error *e);

@@ -265,7 +265,7 @@ static int make_images(struct run *r, double margin, struct error *e)
     return 0;
 }
 
-static int make_ghosts(struct run *r, struct error *e)
+static int make_ghosts(struct run *r, bool sorts, struct error *e)
 {
     double margin;
     if (find_margin(r, &margin, e))
@@ -275,7 +275,7 @@ static int make_ghosts(struct run *r, struct error *e)
         for (int c = 0; c < r->plan->dim; c++)
             if (sides_check_width(&r->plan->scene->box, c, margin, r->plan->array[a].p.name, e))
                 return watch_too_wide(r, e);
-    if (r->domain ? run_domain_ghosts(r, e) : make_images(r, margin, e))
+    if (r->domain ? run_domain_ghosts(r, sorts, e) || widen_h(r, e) : make_images(r, margin, e))
         return -1;
     if (run_domain_keep(r, e))
         return -1;
@@ -338,16 +338,17 @@ static int make_frame(struct run *r, size_t frame, bool counted, struct error *e
 }
 
 /* Those of positions. The others are made when a pass asks for them: at the start their places may be
- * yet to be set. They stay right while the particles stand as they stood. */
-static int make_lists(struct run *r, bool sorted, struct error *e)
+ * yet to be set. They stay right while the particles stand as they stood. sorts: the particles' order is being made;
+ * counted: true pairs are counted. */
+static int make_lists(struct run *r, bool sorts, bool counted, struct error *e)
 {
     if (widen_h(r, e)) /* they stand in another order now */
         return -1;
-    if (find_range_of_h(r, e) || make_ghosts(r, e) || widen_h(r, e) || make_visits(r, e))
+    if (find_range_of_h(r, e) || make_ghosts(r, sorts, e) || widen_h(r, e) || make_visits(r, e))
         return -1;
-    if (sorted || !r->lists_made || r->domain) /* ghosts of others stand elsewhere now */
+    if (counted || !r->lists_made || r->domain) /* ghosts of others stand elsewhere now */
         memset(r->frame_made, false, r->plan->n_frame);
-    return make_frame(r, 0, sorted, e);
+    return make_frame(r, 0, counted, e);
 }
 
 /* Copies of what neighbours will be looked for in from now on. */
@@ -424,7 +425,7 @@ static int renew(struct run *r, bool within, bool sort, struct error *e)
         r->watch->sorted = true;
     }
     if (!status)
-        status = make_lists(r, sort, e);
+        status = make_lists(r, sort, sort, e);
     forget_h(r);
     r->lists_made = !status;
     r->cost.list_builds++;
@@ -526,7 +527,7 @@ int run_lists_again(struct run *r, const struct particles *was, bool counted, st
         if (frame_has(r, 0, a))
             stand(&r->plan->array[a], &was[a]);
     if (!status)
-        status = make_lists(r, counted, e) || narrow_places(r, e) ? -1 : 0;
+        status = make_lists(r, false, counted, e) || narrow_places(r, e) ? -1 : 0;
     forget_h(r);
     for (size_t a = 0; !status && a < n; a++) {
         struct plan_array *pa = &r->plan->array[a];
@@ -546,20 +547,27 @@ int run_lists_again(struct run *r, const struct particles *was, bool counted, st
     return status;
 }
 
-int run_refresh_own(struct run *r, size_t array, int column, struct error *e)
+void run_refresh_images(struct run *r, size_t array, int column)
+{
+    const double begin = omp_get_wtime();
+    ghosts_refresh(&r->ghosts[array], &r->plan->scene->box, &r->plan->array[array].p, column);
+    r->cost.neighbour += omp_get_wtime() - begin;
+}
+
+int run_refresh_ask(struct run *r, size_t array, int column, struct error *e)
 {
     if (!r->stale[array][column])
         return 0;
-    double begin = omp_get_wtime();
-    ghosts_refresh(&r->ghosts[array], &r->plan->scene->box, &r->plan->array[array].p, column);
     r->stale[array][column] = false;
-    r->cost.neighbour += omp_get_wtime() - begin;
-    return run_domain_ask(r, array, column, e);
+    if (r->domain)
+        return run_domain_ask(r, array, column, e);
+    run_refresh_images(r, array, column);
+    return 0;
 }
 
 int run_refresh(struct run *r, size_t array, int column, struct error *e)
 {
-    return run_refresh_own(r, array, column, e) || run_domain_begin(r, e) || run_domain_finish(r, e)
+    return run_refresh_ask(r, array, column, e) || run_domain_begin(r, e) || run_domain_finish(r, e)
                ? -1
                : 0;
 }

@@ -120,7 +120,7 @@ static int refresh_all(struct run *r, const struct pass *p, struct error *e)
     for (size_t s = 0; p->shape == SPH_PAIR && s < p->n_src; s++)
         for (uint32_t k = 0; k < n; k++) {
             const int column = swept(r, p, &p->src[s], k);
-            if (column >= 0 && run_refresh_own(r, p->src[s].array, column, e))
+            if (column >= 0 && run_refresh_ask(r, p->src[s].array, column, e))
                 return -1;
         }
     if (run_domain_begin(r, e))

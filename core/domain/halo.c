@@ -5,6 +5,7 @@
 #include <string.h>
 
 #define TILES 512 /* boxes, at most, by which a rank tells where an array's destinations stand */
+#define ROW 8     /* tiles that are looked at together first */
 #define BLOCK 64  /* sources that are looked at together */
 #define SLACK 1.005
 
@@ -170,6 +171,7 @@ struct making {
     /* Of the peer at hand. */
     struct tile *tile; /* of each of its clouds one after the other */
     size_t *first;     /* [n_cloud + 1] */
+    struct tile *row;  /* [tile / ROW]: of tiles, whichever clouds they are of */
 };
 
 static const struct cloud *cloud_at(const struct making *m, size_t frame, size_t array)
@@ -359,13 +361,19 @@ static int look_at_block(const struct making *m, struct halo_peer *q, size_t arr
             continue;
         struct tile all = m->block[m->first_block[src] + block];
         all = code ? tile_image(m->job->box, all, code) : all;
-        for (size_t t = m->first[dst];
-             near(&all, &whole[dst], w->symmetric) && t < m->first[dst + 1]; t++)
-            if (near(&all, &m->tile[t], w->symmetric)) {
-                c->tile[c->n] = &m->tile[t];
-                c->want[c->n++] = w;
-                end = m->job->cloud[src].n;
-            }
+        if (!near(&all, &whole[dst], w->symmetric))
+            continue;
+        for (size_t t = m->first[dst], far; t < m->first[dst + 1]; t = far + 1) {
+            far = t | (ROW - 1);
+            if (!near(&all, &m->row[t / ROW], w->symmetric))
+                continue;
+            for (; t <= far && t < m->first[dst + 1]; t++)
+                if (near(&all, &m->tile[t], w->symmetric)) {
+                    c->tile[c->n] = &m->tile[t];
+                    c->want[c->n++] = w;
+                    end = m->job->cloud[src].n;
+                }
+        }
     }
     const size_t first = block * BLOCK;
     end = first + BLOCK < end ? first + BLOCK : end;
@@ -444,6 +452,17 @@ static int trade_tiles(struct making *m, struct tile **tile, struct error *e)
     return 0;
 }
 
+static void lay_rows(const struct making *m)
+{
+    const size_t n = m->first[m->n_cloud];
+    for (size_t t = 0; t < n; t++) {
+        struct tile *row = &m->row[t / ROW];
+        if (t % ROW == 0)
+            *row = m->tile[t];
+        tile_join(row, &m->tile[t]);
+    }
+}
+
 static int look(struct making *m, struct error *e)
 {
     struct halo *h = m->h;
@@ -454,6 +473,7 @@ static int look(struct making *m, struct error *e)
             continue;
         m->tile = tile[k];
         lay_tiles(m, h->peer[k].rank, m->first);
+        lay_rows(m);
         status = look_for_peer(m, &h->peer[k], e);
     }
     for (size_t k = 0; tile && !status && k < h->n_peer; k++)
@@ -566,7 +586,8 @@ int halo_make(struct halo *h, const struct halo_job *job, struct ghosts *own, st
     m.n_code = codes_of(job->box, m.code);
     m.first = calloc(2 * (m.n_cloud + 1), sizeof *m.first);
     m.first_block = m.first + m.n_cloud + 1;
-    int status = m.first ? 0 : error_memory(e, "the domain", m.n_cloud);
+    m.row = malloc((m.n_cloud * TILES / ROW + 1) * sizeof *m.row);
+    int status = m.first && m.row ? 0 : error_memory(e, "the domain", m.n_cloud);
     if (!status)
         status = introduce(&m, e) || find_peers(&m, e) || look(&m, e) || take_own(h, own, e) ||
                          trade_counts(h, e) || lay_ghosts(h, own, e) || trade_codes(h, e)
@@ -575,6 +596,7 @@ int halo_make(struct halo *h, const struct halo_job *job, struct ghosts *own, st
     if (status)
         return -1; /* messages may still be under way: what they use is not given back */
     free(m.first);
+    free(m.row);
     free(m.block);
     free(m.mine);
     free(m.whole);

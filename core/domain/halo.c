@@ -330,16 +330,42 @@ struct candidates {
     size_t n;
 };
 
+/* A source as an image, and how far it reaches. */
+struct point {
+    double x[3], reach;
+};
+
+static struct point point_at(const struct making *m, const struct cloud *c, size_t i, unsigned code)
+{
+    struct point p = {.reach = m->job->factor * SLACK * c->scale * c->h[i]};
+    for (int a = 0; a < c->dim; a++) {
+        const unsigned image = code >> 2 * a & 3u;
+        p.x[a] = image ? sides_image(m->job->box, a, image, c->x[a][i]) : c->x[a][i];
+    }
+    return p;
+}
+
+/* Whether it may be within reach of destinations in a box. */
+static inline bool point_near(const struct point *p, const struct tile *dst, bool symmetric)
+{
+    const double reach = symmetric && p->reach > dst->reach ? p->reach : dst->reach;
+    double gap2 = 0.0;
+    for (int a = 0; a < 3; a++) {
+        const double below = dst->lo[a] - p->x[a], above = p->x[a] - dst->hi[a];
+        const double gap = below > above ? below : above;
+        gap2 += gap > 0.0 ? gap * gap : 0.0;
+    }
+    return gap2 <= reach * reach;
+}
+
 static bool wanted(const struct making *m, const struct candidates *c, size_t i, unsigned code)
 {
-    struct tile point;
+    struct point p = {{0.0}, 0.0};
     for (size_t k = 0; k < c->n; k++) {
         const struct halo_want *w = c->want[k];
-        if (k == 0 || w != c->want[k - 1]) {
-            point = tile_of(cloud_at(m, w->frame, w->src), i, i + 1, m->job->factor * SLACK);
-            point = code ? tile_image(m->job->box, point, code) : point;
-        }
-        if (near(&point, c->tile[k], w->symmetric))
+        if (k == 0 || w != c->want[k - 1])
+            p = point_at(m, cloud_at(m, w->frame, w->src), i, code);
+        if (point_near(&p, c->tile[k], w->symmetric))
             return true;
     }
     return false;

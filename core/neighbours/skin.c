@@ -22,6 +22,7 @@ struct skin_block {
     double h;       /* largest */
     double lost;    /* a position's error, at most */
     uint32_t exact; /* its place in `exact`, or EXACT_NO */
+    uint32_t coded; /* 0: it is not rounded, and has no codes */
 };
 
 static size_t smaller(size_t a, size_t b)
@@ -62,6 +63,7 @@ SKIN_INLINE void block_measure(struct skin_block *b, const struct cloud *c, size
 
     memset(b, 0, sizeof *b);
     b->exact = EXACT_NO;
+    b->coded = 1;
     for (int a = 0; a < c->dim; a++) {
         const double *x = c->x[a] + first;
         double lo = INFINITY, hi = -INFINITY, lost;
@@ -91,6 +93,7 @@ SKIN_INLINE void block_measure(struct skin_block *b, const struct cloud *c, size
     }
     b->h = most;
     if (!(b->lost + sum <= ERROR_MOST * c->scale * least) || !(least >= RATIO_LEAST * b->h)) {
+        b->coded = 0;
         b->exact = 0;
         b->lost = 0;
     }
@@ -289,7 +292,7 @@ SKIN_INLINE struct skin_change block_change(const struct skin *s, size_t at, con
     size_t columns = (size_t)s->dim + 1;
     const uint16_t *code = s->code + at * codes_of(s);
 
-    if (b->exact != EXACT_NO) {
+    if (!b->coded) {
         const double *was = s->exact + b->exact * columns * BLOCK;
 
         return c->dim == 1   ? exact_in(was, c, first, n, relative, 1)
@@ -352,12 +355,13 @@ int skin_keep(struct skin *s, const struct cloud *c, int threads, struct error *
     const struct skin_calls *calls = calls_best();
     size_t columns = (size_t)c->dim + 1;
     struct range h = range_of(c->h, c->n, threads);
-    bool even = !(h.least < h.most), exactly = s->exactly;
+    bool even = !(h.least < h.most);
+    enum skin_form form = s->form;
 
     if (s->dim != c->dim || s->even != even) {
         skin_fini(s);
     }
-    s->exactly = exactly;
+    s->form = form;
     (void)threads;
     s->even = even;
     s->dim = c->dim;
@@ -370,8 +374,11 @@ int skin_keep(struct skin *s, const struct cloud *c, int threads, struct error *
 #pragma omp parallel for schedule(static) num_threads(threads) if (threads > 1)
     for (size_t b = 0; b < s->n_block; b++) {
         calls->measure(&s->block[b], c, b * BLOCK, smaller(BLOCK, c->n - b * BLOCK));
-        if (exactly) {
+        if (form != SKIN_SHORT) {
             s->block[b].exact = 0;
+        }
+        if (form == SKIN_EXACT) {
+            s->block[b].coded = 0;
             s->block[b].lost = 0;
         }
     }
@@ -384,9 +391,10 @@ int skin_keep(struct skin *s, const struct cloud *c, int threads, struct error *
         const struct skin_block *block = &s->block[b];
         size_t first = b * BLOCK, n = smaller(BLOCK, c->n - first);
 
-        if (block->exact == EXACT_NO) {
+        if (block->coded) {
             calls->encode(block, c, first, n, even, s->code + b * codes_of(s));
-        } else {
+        }
+        if (block->exact != EXACT_NO) {
             block_copy(c, first, n, s->exact + block->exact * columns * BLOCK);
         }
     }
@@ -461,7 +469,8 @@ static bool skin_fits(const struct skin *s, size_t bytes, size_t codes, size_t e
         return false;
     }
     for (size_t b = 0; b < s->n_block; b++) {
-        if (s->block[b].exact != EXACT_NO && s->block[b].exact >= s->n_exact) {
+        if ((s->block[b].exact != EXACT_NO || !s->block[b].coded) &&
+            s->block[b].exact >= s->n_exact) {
             return false;
         }
     }

@@ -14,11 +14,16 @@
 
 struct skin_block;
 
+enum skin_form {
+    SKIN_SHORT,  /* rounded wherever that is safe */
+    SKIN_PLACES, /* the same, and beside it what there was before rounding, for skin_places */
+    SKIN_EXACT /* nothing is rounded: changes are those of the particles alone, however they stand in blocks */
+};
+
 struct skin {
     int dim;
-    bool even; /* all h were the same, and are not kept one by one */
-    bool
-        exactly; /* set by who owns it: nothing is rounded, so that changes are those of the particles alone */
+    bool even;           /* all h were the same, and are not kept one by one */
+    enum skin_form form; /* set by who owns it */
     size_t n, n_block, n_exact;
     struct skin_block *block;
     uint16_t *code; /* [n_block][dim, and 1 unless even][64]: positions and h */

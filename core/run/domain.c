@@ -435,7 +435,7 @@ int run_domain_keep(struct run *r, struct error *e)
             if (!frame_has(r, f, a))
                 continue;
             const struct cloud here = run_cloud(r, a, f);
-            met->exactly = true;
+            met->form = SKIN_EXACT;
             if (skin_keep(met++, &here, r->threads, e))
                 return -1;
         }

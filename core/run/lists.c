@@ -176,7 +176,9 @@ static int keep_places(struct run *r, size_t frame, struct error *e)
     const size_t n = clouds_of(r, frame, r->cloud);
     /* On several ranks a checkpoint holds the places and no lists: these are made from them again. */
     for (size_t k = 0; k < n; k++)
-        r->kept[frame * r->plan->n_array + k].exactly = r->plan->strict || r->domain;
+        r->kept[frame * r->plan->n_array + k].form = r->plan->strict ? SKIN_EXACT
+                                                     : r->domain     ? SKIN_PLACES
+                                                                     : SKIN_SHORT;
     for (size_t k = 0; !r->plan->frame[frame].frozen && k < n; k++)
         if (skin_keep(&r->kept[frame * r->plan->n_array + k], &r->cloud[k], r->threads, e))
             return -1;

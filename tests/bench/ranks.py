@@ -5,7 +5,11 @@ the threaded run beside it; and what 1000 and 100 000 ranks would do, by a model
     ranks.py [--rounds N] [--steps N] [--particles N] [--ranks 2,4,8] [--no-model]
 
 SPH, SPH_PLUGIN_PATH: the build. More ranks than cores are marked: they share cores, and wait for each other to be let on
-one. Times are seconds of the loop without files, by summary.json; of each round a ratio, of the ratios the median."""
+one. Times are seconds of the loop without files, by summary.json; of each round a ratio, of the ratios the median.
+
+"apart": a process a core at once, each with its share of the particles in a tank as much smaller, that say nothing to
+each other; the slowest counts. No run on ranks can be expected to do better by more than noise: so much of the cores is
+there."""
 import argparse
 import json
 import math
@@ -20,6 +24,7 @@ MPIRUN = shlex.split(os.environ.get("MPIRUN") or "mpirun")
 CORES = len(os.sched_getaffinity(0))
 ENVIRONMENT = {**os.environ, "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
                "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMP_WAIT_POLICY": "passive"}
+APART = 0  # ranks that are none
 LAYERS = 2.6 * 1.1  # how far ghosts reach, in spacings: support 2, h 1.3 dx, a skin of a tenth
 
 
@@ -46,11 +51,40 @@ class Bench:
         self.scratch = tempfile.TemporaryDirectory()
         self.steps = steps
 
-    def run(self, particles, ranks, threads=1):
-        """One run: its summary, with "seconds" of a step and "n", the particles."""
-        scene, out = os.path.join(self.scratch.name, "scene.json"), os.path.join(self.scratch.name, "out")
+    def paths(self, name, particles):
+        scene, out = os.path.join(self.scratch.name, name + ".json"), os.path.join(self.scratch.name, name)
         with open(scene, "w") as file:
             json.dump(box(particles), file)
+        return scene, out
+
+    def summary(self, out):
+        with open(os.path.join(out, "summary.json")) as file:
+            summary = json.load(file)
+        cost = summary["cost"]
+        summary["seconds"] = cost["loop_s"] / summary["steps"]
+        summary["n"] = cost["particle_updates"] / summary["steps"]
+        return summary
+
+    def apart(self, particles, cores):
+        """Runs beside each other: the summary of the slowest, with "n" of all."""
+        paths = [self.paths(f"apart{k}", particles // cores) for k in range(cores)]
+        runs = [subprocess.Popen([SPH, scene, "--out", out, "--quiet", "--threads", "1", "--steps", str(self.steps)],
+                                 env=ENVIRONMENT,
+                                 preexec_fn=lambda core=sorted(os.sched_getaffinity(0))[k]: os.sched_setaffinity(0, [core]))
+                for k, (scene, out) in enumerate(paths)]
+        if any([run.wait() for run in runs]):
+            raise SystemExit("a run on its own has failed")
+        summaries = [self.summary(out) for _, out in paths]
+        slowest = max(summaries, key=lambda summary: summary["seconds"])
+        slowest["n"] = sum(summary["n"] for summary in summaries)
+        slowest["cost"]["pairs"] = sum(summary["cost"]["pairs"] for summary in summaries)
+        return slowest
+
+    def run(self, particles, ranks, threads=1):
+        """One run: its summary, with "seconds" of a step and "n", the particles."""
+        if ranks == APART:
+            return self.apart(particles, CORES)
+        scene, out = self.paths("scene", particles)
         before = []
         if ranks > 1:
             shared = ranks * threads > CORES
@@ -58,12 +92,7 @@ class Bench:
         env = {**ENVIRONMENT, "OMPI_MCA_mpi_yield_when_idle": "1" if ranks > CORES else "0"}
         subprocess.run([*before, SPH, scene, "--out", out, "--quiet", "--threads", str(threads), "--steps", str(self.steps)],
                        check=True, env=env)
-        with open(os.path.join(out, "summary.json")) as file:
-            summary = json.load(file)
-        cost = summary["cost"]
-        summary["seconds"] = cost["loop_s"] / summary["steps"]
-        summary["n"] = cost["particle_updates"] / summary["steps"]
-        return summary
+        return self.summary(out)
 
 
 def mark(ranks):
@@ -77,7 +106,7 @@ def figures(runs):
 
 def strong(bench, options):
     """{ranks: runs}, and how many times as fast as one rank each is."""
-    kinds = [(1, 1), (1, CORES)] + [(ranks, 1) for ranks in options.ranks]
+    kinds = [(1, 1), (1, CORES), (APART, 1)] + [(ranks, 1) for ranks in options.ranks]
     runs = {kind: [] for kind in kinds}
     for turn in range(options.rounds):
         for kind in kinds if turn % 2 == 0 else kinds[::-1]:
@@ -89,11 +118,13 @@ def strong(bench, options):
           f" {'times one':>9} {'of the threaded':>15}")
     for kind in kinds:
         best = figures(runs[kind])
-        ratio = statistics.median(a["seconds"] / b["seconds"] for a, b in zip(runs[1, 1], runs[kind]))
-        beside = statistics.median(a["seconds"] / b["seconds"] for a, b in zip(runs[1, CORES], runs[kind]))
+        # By the particle: halves of a lattice are not quite half.
+        ratio = statistics.median(a["seconds"] / a["n"] * b["n"] / b["seconds"] for a, b in zip(runs[1, 1], runs[kind]))
+        beside = statistics.median(a["seconds"] / a["n"] * b["n"] / b["seconds"] for a, b in zip(runs[1, CORES], runs[kind]))
         ranks = best.get("ranks")
         cost = best["cost"]
-        print(f"{kind[0]:>5}{mark(kind[0])} {kind[1]:>7} {best['seconds']:9.4f} {n / best['seconds'] / 1e6:11.2f}"
+        name = "apart" if kind[0] == APART else kind[0]
+        print(f"{name:>5}{mark(kind[0])} {kind[1]:>7} {best['seconds']:9.4f} {best['n'] / best['seconds'] / 1e6:11.2f}"
               f" {cost['pairs'] / best['steps'] / best['seconds'] / 1e6:9.0f}"
               + (f" {ranks['ghosts']:7.3f} {ranks['imbalance']['last']:7.3f} {cost['mpi_s'] / cost['loop_s']:6.1%}" if ranks
                  else f" {'-':>7} {'-':>7} {'-':>6}")
@@ -182,7 +213,7 @@ def model(bench, options):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
     parser.add_argument("--rounds", type=int, default=3, help="(3)")
-    parser.add_argument("--steps", type=int, default=150, help="(150)")
+    parser.add_argument("--steps", type=int, default=300, help="(300)")
     parser.add_argument("--particles", type=int, default=150000, help="(150000)")
     parser.add_argument("--ranks", type=lambda text: [int(word) for word in text.split(",")], default=[2, 4, 8])
     parser.add_argument("--no-model", action="store_true")

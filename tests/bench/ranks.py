@@ -129,7 +129,21 @@ def strong(bench, options):
               + (f" {ranks['ghosts']:7.3f} {ranks['imbalance']['last']:7.3f} {cost['mpi_s'] / cost['loop_s']:6.1%}" if ranks
                  else f" {'-':>7} {'-':>7} {'-':>6}")
               + f" {ratio:9.3f} {beside:15.3f}", flush=True)
+    bar(runs)
     return runs
+
+
+BAR = 1.85  # two ranks against one, on two cores
+
+
+def bar(runs):
+    if (2, 1) not in runs or CORES < 2:
+        return
+    ratios = sorted(a["seconds"] / b["seconds"] for a, b in zip(runs[1, 1], runs[2, 1]))
+    of_apart = statistics.median(a["seconds"] / a["n"] * b["n"] / b["seconds"] for a, b in zip(runs[APART, 1], runs[2, 1]))
+    reached = statistics.median(ratios)
+    print(f"two ranks: {reached:.3f} times one ({ratios[0]:.3f} to {ratios[-1]:.3f}), at least {BAR}:"
+          f" {'OK' if reached >= BAR else 'MISS'}; {of_apart:.1%} of {CORES} processes apart", flush=True)
 
 
 def weak(bench, options, each):

@@ -290,7 +290,7 @@ refused("latest is broken", ("--resume", "latest"), "no good checkpoint is in")
 file = spoil(data)
 with h5py.File(file, "r+") as one:
     one["format"][0] = 99
-refused("a newer format", ("--resume", file), "is a checkpoint of format 99; this version reads format 2")
+refused("a newer format", ("--resume", file), "is a checkpoint of format 99; this version reads format 3")
 for name, bytes_, said in (
     ("version", b"9.9", "was made by sph 9.9; this is sph"),
     ("plugins", b"gsph\t77\n", 'was made with version 77 of the plugin "gsph"; here it is'),

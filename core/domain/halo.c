@@ -216,6 +216,8 @@ static struct cells cells_over(const struct tile *whole, int dim)
         c.lo[a] = whole->lo[a];
     }
     edge = axes ? pow(volume / TILES, 1.0 / axes) : 1.0;
+    if (!isfinite(edge)) /* somebody is nowhere: whoever makes lists says so */
+        axes = 0;
     for (bool fits = false; axes && !fits; edge *= 1.1) {
         double n = 1.0;
         for (int a = 0; a < dim; a++)
@@ -233,8 +235,8 @@ static size_t cell_of(const struct cells *c, const struct cloud *cloud, size_t i
 {
     size_t at = 0;
     for (int a = cloud->dim - 1; a >= 0; a--) {
-        const size_t k = (size_t)((cloud->x[a][i] - c->lo[a]) * c->scale[a]);
-        at = at * c->n[a] + (k < c->n[a] ? k : c->n[a] - 1);
+        const double q = (cloud->x[a][i] - c->lo[a]) * c->scale[a];
+        at = at * c->n[a] + (q < (double)c->n[a] ? (size_t)q : c->n[a] - 1);
     }
     return at;
 }
@@ -409,6 +411,35 @@ static int look_at_block(const struct making *m, struct halo_peer *q, size_t arr
     return 0;
 }
 
+/* By code, and of one code as it is: by particle. So the order of ghosts tells nothing of how particles stood in blocks,
+ * and is the same when a halo is made again. */
+static int part_sort(struct halo_part *p, struct error *e)
+{
+    size_t place[65] = {0};
+    uint32_t *send = malloc((p->n_send + 1) * sizeof *send);
+    uint8_t *image = malloc(p->n_send + 1);
+    if (!send || !image) {
+        free(send);
+        free(image);
+        return error_memory(e, "ghosts", p->n_send * sizeof *send);
+    }
+    for (size_t i = 0; i < p->n_send; i++)
+        place[p->image[i] + 1]++;
+    for (size_t code = 0; code < 64; code++)
+        place[code + 1] += place[code];
+    for (size_t i = 0; i < p->n_send; i++) {
+        const size_t at = place[p->image[i]]++;
+        send[at] = p->send[i];
+        image[at] = p->image[i];
+    }
+    free(p->send);
+    free(p->image);
+    p->send = send;
+    p->image = image;
+    p->send_capacity = p->n_send + 1;
+    return 0;
+}
+
 static int look_for_peer(const struct making *m, struct halo_peer *q, struct error *e)
 {
     const size_t most = m->first[m->n_cloud] * m->job->n_want + 1;
@@ -423,6 +454,8 @@ static int look_for_peer(const struct making *m, struct halo_peer *q, struct err
         for (size_t b = 0; !status && b * BLOCK < n; b++)
             for (size_t k = self; !status && k < m->n_code; k++)
                 status = look_at_block(m, q, a, b, m->code[k], &c, e);
+        if (!status)
+            status = part_sort(&q->part[a], e);
     }
     free(c.tile);
     free(c.want);

@@ -37,8 +37,11 @@ int ranks_begin(int *argc, char ***argv, struct error *e)
 {
     if (!launched())
         return 0;
-    if (MPI_Init(argc, argv) != MPI_SUCCESS)
+    int provided;
+    if (MPI_Init_thread(argc, argv, MPI_THREAD_FUNNELED, &provided) != MPI_SUCCESS)
         return error_set(e, EXIT_RUN, "MPI does not start");
+    if (provided < MPI_THREAD_FUNNELED) /* the first thread speaks while others compute */
+        return error_set(e, EXIT_RUN, "this MPI is not for programs with threads");
     return 0;
 }
 

@@ -136,7 +136,7 @@ int slab_cut(struct slab *s, const double *const *x, const float *weight, size_t
     struct point *p = malloc((n + 1) * sizeof *p);
     double *room = malloc((4 * cuts + 1) * sizeof *room);
     double lo = 0.0, hi = 0.0, weigh = 0.0;
-    int status = p && room ? 0 : error_memory(e, "the domain", n * sizeof *p);
+    int status = ranks_agree(p && room ? 0 : error_memory(e, "the domain", n * sizeof *p), e);
     if (!status)
         status = find_axis(s, x, n, &lo, &hi, e);
     if (!status) {

@@ -1,5 +1,6 @@
-/* domain/wire.h -- all that ranks say to each other while a run goes on: messages, sums, and the alarm by which
- * one that has failed ends the waiting of all. On communicators of its own, and every byte is counted.
+/* domain/wire.h -- what ranks say to each other in the course of a run: messages, sums, and the alarm by which
+ * one that has failed ends the waiting of all. On communicators of its own, and every byte is counted. (How the
+ * domain is cut, ranks agree on in partition.c and slab.c, and on an end in ranks.c: outside of this.)
  *
  * Whatever waits here returns -1 with an empty sentence when another rank has raised the alarm: its caller goes
  * home as from any failure, to where ranks agree (ranks.h). One thread only. Without MPI in the build, or on

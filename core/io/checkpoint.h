@@ -8,7 +8,7 @@
 #include "io/output.h"
 
 /* Raised whenever what is in a checkpoint changes: there is no reading of others. */
-#define CHECKPOINT_FORMAT 2
+#define CHECKPOINT_FORMAT 3
 
 struct checkpoint {
     struct store store; /* first: what its calls get */

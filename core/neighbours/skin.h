@@ -6,7 +6,7 @@
  * hidden is added to the displacement and taken off h, so the answer errs on the safe side: by less
  * than 0.001 of the
  * reach, 1 % of a skin of 0.1. Blocks that are too wide for that (with a particle that has flown
- * away) or whose h differ too much are kept as they are. */
+ * away) or whose h differ too much are kept as they are. On several ranks all are kept as they are besides. */
 #ifndef NEIGHBOURS_SKIN_H
 #define NEIGHBOURS_SKIN_H
 

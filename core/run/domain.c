@@ -368,18 +368,35 @@ int run_domain_meet(struct run *r, struct error *e)
     return status;
 }
 
+/* Parents of images whose particles have gone to other places: of each image in order, as halo_make has them. */
+static void parents_follow(struct ghosts *own, const uint32_t *place, const bool *sent,
+                           uint32_t *scratch)
+{
+    for (size_t first = 0, end; first < own->n; first = end) {
+        size_t n = 0;
+        for (end = first; end < own->n && own->image[end] == own->image[first];)
+            end++;
+        for (int late = 0; late < 2; late++)
+            for (size_t i = first; i < end; i++)
+                if (sent[own->parent[i]] == late)
+                    scratch[n++] = place[own->parent[i]];
+        memcpy(own->parent + first, scratch, n * sizeof *scratch);
+    }
+}
+
 /* Particles that peers need go behind those that nobody does: most groups without the former need no ghosts of others
  * either, and stand together (run/passes.c). */
 static int part_sent(struct run *r, size_t array, struct error *e)
 {
     struct particles *p = &r->plan->array[array].p;
     const struct halo *h = &r->domain->halo;
-    const struct ghosts *own = &r->ghosts[array];
+    struct ghosts *own = &r->ghosts[array];
     if (halo_sent(h, array) == 0)
         return 0;
     uint32_t *order = malloc(2 * p->n * sizeof *order), *place = order + p->n;
+    uint32_t *scratch = malloc((own->n + 1) * sizeof *scratch);
     bool *sent = calloc(p->n, sizeof *sent);
-    int status = order && sent ? 0 : error_memory(e, "the order of particles", p->n);
+    int status = order && sent && scratch ? 0 : error_memory(e, "the order of particles", p->n);
     size_t n = 0;
     for (size_t k = 0; !status && k < h->n_peer; k++)
         for (size_t i = 0; i < h->peer[k].part[array].n_send; i++)
@@ -395,9 +412,10 @@ static int part_sent(struct run *r, size_t array, struct error *e)
     for (size_t k = 0; !status && k < h->n_peer; k++)
         for (size_t i = 0; i < h->peer[k].part[array].n_send; i++)
             h->peer[k].part[array].send[i] = place[h->peer[k].part[array].send[i]];
-    for (size_t i = 0; !status && i < own->n; i++)
-        own->parent[i] = place[own->parent[i]];
+    if (!status)
+        parents_follow(own, place, sent, scratch);
     free(order);
+    free(scratch);
     free(sent);
     return status;
 }
@@ -522,6 +540,25 @@ bool run_domain_far(const struct run *r, const struct pass *p, size_t group)
         if (group < r->list[p->list[s]].n_group && r->domain->far[p->list[s]][group])
             return true;
     return false;
+}
+
+size_t run_domain_bytes(const struct run *r, size_t *lists, size_t *places)
+{
+    const struct run_domain *d = r->domain;
+    const size_t n = r->plan->n_array;
+    size_t bytes = 0;
+    for (size_t k = 0; d && k < r->plan->n_list; k++)
+        *lists += d->far_capacity[k] * sizeof **d->far;
+    for (size_t k = 0; d && k < r->plan->n_frame * n; k++)
+        *places += skin_bytes(&d->met[k]);
+    for (size_t k = 0; d && k < d->halo.n_peer; k++) {
+        bytes += d->halo.peer[k].out_capacity + d->halo.peer[k].in_capacity;
+        for (size_t a = 0; a < n; a++)
+            bytes += d->halo.peer[k].part[a].send_capacity * (sizeof(uint32_t) + sizeof(uint8_t));
+    }
+    for (size_t a = 0; d && a < n; a++)
+        bytes += d->halo.image_capacity[a];
+    return bytes;
 }
 
 /* -- Together -------- */

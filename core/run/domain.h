@@ -25,7 +25,7 @@ struct run_domain {
     float *weight;
     double *place;
     size_t capacity;
-    double imbalance; /* of the pairs, when particles were last sorted */
+    double imbalance; /* of the cost, when particles were last sorted */
     uint64_t moved,
         cuts;       /* particles that have left this rank; how often the domain was cut anew */
     uint64_t halos; /* how often ghosts were made anew */
@@ -67,6 +67,9 @@ void run_domain_poke(const struct run *r);
 /* A list of this rank's has been made; whether a pass's sources of a group are not all this rank's own. */
 int run_domain_list(struct run *r, size_t list, struct error *e);
 bool run_domain_far(const struct run *r, const struct pass *p, size_t group);
+
+/* Bytes held for ghosts of others' particles; what goes with lists and places is added there. */
+size_t run_domain_bytes(const struct run *r, size_t *lists, size_t *places);
 
 /* Copies of all arrays on rank 0, with every column; elsewhere arrays of nothing. all: [n_array], to be freed by
  * run_domain_scatter in any case. */

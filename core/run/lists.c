@@ -588,5 +588,6 @@ struct run_memory run_memory(const struct run *r)
         m.places += skin_bytes(&r->kept[k]);
     for (size_t a = 0; a < n; a++)
         m.ghosts += r->ghosts[a].capacity * (sizeof(uint32_t) + sizeof(uint8_t));
+    m.ghosts += run_domain_bytes(r, &m.lists, &m.places);
     return m;
 }

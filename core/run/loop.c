@@ -235,11 +235,16 @@ static int loop_begin(struct loop *l, struct plan *plan, struct error *e)
             &l->run, l->scene_text ? 0 : error_memory(e, "the scene's text", s->doc->length), e))
         return -1;
     l->checkpointed = UINT64_MAX;
-    l->refused =
-        run_init(&l->run, plan, l->options->threads, l->options->path, l->options->audit, e) ||
-        (l->options->resume    ? loop_resume(l, e)
-         : run_speaks(&l->run) ? earlier_clear(&l->earlier, l->out, e)
-                               : 0);
+    /* Ranks agree on each part of it: one may fail alone where the others go on. */
+    l->refused = run_domain_agree(
+        &l->run,
+        run_init(&l->run, plan, l->options->threads, l->options->path, l->options->audit, e), e);
+    if (!l->refused)
+        l->refused = run_domain_agree(&l->run,
+                                      l->options->resume    ? loop_resume(l, e)
+                                      : run_speaks(&l->run) ? earlier_clear(&l->earlier, l->out, e)
+                                                            : 0,
+                                      e);
     if (l->refused)
         return -1;
     progress_start(&l->progress, l->options->progress && run_speaks(&l->run), l->begin, l->end);
@@ -254,7 +259,10 @@ static int loop_begin(struct loop *l, struct plan *plan, struct error *e)
         status = measures_open(&l->measures, &l->run, l->out, l->options->resume != NULL, e);
     if (!status)
         status = loop_ranks_open(&l->ranks, &l->run, l->out, l->options->resume != NULL, e);
-    return status;
+    if (!l->run.domain)
+        return status;
+    l->refused = run_domain_agree(&l->run, status, e);
+    return l->refused ? -1 : 0;
 }
 
 /* When a device failed, and what is left. */

@@ -377,7 +377,7 @@ static int restore(struct reading *q, struct error *e)
 {
     struct run *r = q->r;
     bool cut = false;
-    int status = numbers_restore(q, e);
+    int status = q->kept ? numbers_restore(q, e) : error_memory(e, "a checkpoint", 1);
     for (size_t a = 0; !status && a < r->plan->n_array; a++)
         status = kept_open(&q->kept[a], &r->plan->array[a].p, e) || array_restore(q, a, e) ? -1 : 0;
     if (!status && r->domain && q->was == q->ranks)
@@ -396,7 +396,7 @@ int ranks_restore(struct run *r, struct store *s, size_t ranks, struct error *e)
         q.me = (size_t)wire_rank(r->domain->wire);
     }
     q.kept = calloc(r->plan->n_array + 1, sizeof *q.kept);
-    const int status = q.kept ? restore(&q, e) : error_memory(e, "a checkpoint", 1);
+    const int status = restore(&q, e);
     for (size_t a = 0; q.kept && a < r->plan->n_array; a++)
         particles_fini(&q.kept[a]);
     free(q.kept);

@@ -19,15 +19,14 @@ int shared_text(const struct run *r, char **text, struct error *e)
     return wire_tell(r->domain->wire, copy, n, e);
 }
 
-int shared_file_begin(const struct run *r, const struct output *o, const char *name,
-                      char **temporary, struct error *e)
+int shared_file_begin(struct run *r, const struct output *o, const char *name, char **temporary,
+                      struct error *e)
 {
-    uint64_t nobody = 0;
     *temporary = run_speaks(r) ? output_begin(o, name) : NULL;
-    if (run_speaks(r) && !*temporary)
-        return error_memory(e, "a path", strlen(name));
-    /* Once it is through the sum everybody has come. */
-    if (shared_text(r, temporary, e) || run_share_count(r, &nobody, e)) {
+    const int status = run_speaks(r) && !*temporary ? error_memory(e, "a path", strlen(name))
+                                                    : shared_text(r, temporary, e);
+    /* Nobody goes on before all have the name: what fails then is of the file. */
+    if (run_domain_agree(r, status, e)) {
         free(*temporary);
         *temporary = NULL;
         return -1;

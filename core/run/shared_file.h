@@ -8,8 +8,8 @@
 
 /* Where to write to, in fresh memory. When it succeeds all ranks are here: until the file is committed or dropped
  * whatever fails is agreed on (run_domain_agree) before anybody goes elsewhere. */
-int shared_file_begin(const struct run *r, const struct output *o, const char *name,
-                      char **temporary, struct error *e);
+int shared_file_begin(struct run *r, const struct output *o, const char *name, char **temporary,
+                      struct error *e);
 /* status: of this rank, until now. If any is not 0 the file goes, and all fail. Frees the path. */
 int shared_file_end(struct run *r, const struct output *o, char *temporary, const char *name,
                     int status, struct error *e);

@@ -114,12 +114,10 @@ static void add_exactly(const struct plan_array *a, struct exact_sum sum[SUMS])
     }
 }
 
+/* Of this rank's particles; with --strict of all. */
 static int sum_all(const struct run *r, double sum[SUMS], struct error *e)
 {
     struct exact_sum exact[SUMS] = {{.digit = {0}}};
-    uint32_t op[SUMS];
-    for (int k = 0; k < SUMS; k++)
-        op[k] = SPH_REDUCE_SUM;
     for (size_t a = 0; a < r->plan->n_array; a++) {
         if (r->plan->strict)
             add_exactly(&r->plan->array[a], exact);
@@ -127,11 +125,47 @@ static int sum_all(const struct run *r, double sum[SUMS], struct error *e)
             add_array(r, &r->plan->array[a], sum);
     }
     if (!r->plan->strict)
-        return run_share_numbers(r, sum, op, SUMS, e);
+        return 0;
     if (run_share_exact(r, exact, SUMS, e))
         return -1;
     for (int k = 0; k < SUMS; k++)
         sum[k] = exact_value(&exact[k]);
+    return 0;
+}
+
+/* What the scene's functions reduce to energies, anew, and not what the passes came to: the integrator has advanced it
+ * since. Of this rank's particles; with --strict of all. */
+static int sum_energies(const struct run *r, struct totals *t, struct error *e)
+{
+    for (size_t i = 0; i < r->plan->n_reduction; i++) {
+        const struct reduction *d = &r->plan->reduction[i];
+        double *of = totals_of(t, d->declared->use), here;
+        if (!of)
+            continue;
+        if (run_reduce(r, d, &here, e))
+            return -1;
+        *of += here;
+        t->has_energy = true;
+    }
+    return 0;
+}
+
+/* Of all ranks. */
+static int share(const struct run *r, double sum[SUMS], struct totals *t, struct error *e)
+{
+    double all[SUMS + 2];
+    uint32_t op[SUMS + 2];
+    if (r->plan->strict)
+        return 0;
+    for (int k = 0; k < SUMS + 2; k++) {
+        all[k] = k < SUMS ? sum[k] : k == SUMS ? t->internal : t->potential;
+        op[k] = SPH_REDUCE_SUM;
+    }
+    if (run_share_numbers(r, all, op, SUMS + 2, e))
+        return -1;
+    memcpy(sum, all, SUMS * sizeof *sum);
+    t->internal = all[SUMS];
+    t->potential = all[SUMS + 1];
     return 0;
 }
 
@@ -141,7 +175,7 @@ int run_totals(struct run *r, struct totals *t, struct error *e)
     *t = (struct totals){0};
     if (r->device)
         return run_device_totals(r, t, e);
-    if (sum_all(r, sum, e))
+    if (sum_all(r, sum, e) || sum_energies(r, t, e) || share(r, sum, t, e))
         return -1;
     t->mass = sum[MASS];
     t->kinetic = sum[KINETIC];
@@ -149,17 +183,5 @@ int run_totals(struct run *r, struct totals *t, struct error *e)
     t->angular_scale = sum[ANGULAR_SCALE];
     memcpy(t->momentum, sum + MOMENTUM, sizeof t->momentum);
     memcpy(t->angular, sum + ANGULAR, sizeof t->angular);
-    for (size_t i = 0; i < r->plan->n_reduction; i++) {
-        const struct reduction *d = &r->plan->reduction[i];
-        double *of = totals_of(t, d->declared->use);
-        if (!of)
-            continue;
-        /* Anew, and not what the pass came to: the integrator has advanced it since. */
-        double here;
-        if (run_reduce(r, d, &here, e))
-            return -1;
-        *of += here;
-        t->has_energy = true;
-    }
     return 0;
 }

@@ -2,7 +2,7 @@
 """Runs on several ranks against one, in turns: strong and weak scaling of a dam-break-like box in three dimensions, with
 the threaded run beside it; and what 1000 and 100 000 ranks would do, by a model that is fitted to what was measured.
 
-    ranks.py [--rounds N] [--steps N] [--particles N] [--ranks 2,4,8] [--no-model]
+    ranks.py [--rounds N] [--steps N] [--particles N] [--ranks 2,4,8] [--no-model] [--no-weak]
 
 SPH, SPH_PLUGIN_PATH: the build. More ranks than cores are marked: they share cores, and wait for each other to be let on
 one. Times are seconds of the loop without files, by summary.json; of each round a ratio, of the ratios the median.
@@ -133,11 +133,11 @@ def strong(bench, options):
     return runs
 
 
-BAR = 1.85  # two ranks against one, on two cores
+BAR = 1.85  # two ranks against one, on a machine of two cores
 
 
 def bar(runs):
-    if (2, 1) not in runs or CORES < 2:
+    if (2, 1) not in runs or CORES != 2:
         return
     ratios = sorted(a["seconds"] / b["seconds"] for a, b in zip(runs[1, 1], runs[2, 1]))
     of_apart = statistics.median(a["seconds"] / a["n"] * b["n"] / b["seconds"] for a, b in zip(runs[APART, 1], runs[2, 1]))

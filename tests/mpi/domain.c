@@ -178,6 +178,46 @@ static void check_sources(const struct world *w, const struct particles *p, cons
     free(seen);
 }
 
+/* Whether a ghost at x, particle i, may be of use to some destination that a want is for: within reach of the box of
+ * all of this rank's. */
+static int may_need(const struct world *w, const struct particles *dst,
+                    const struct halo_want *want, size_t i, const double *x, double factor)
+{
+    double reach = want->symmetric ? reach_of(w, want->src, i) : 0.0, gap2 = 0.0;
+    double lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t d = 0; d < dst->n; d++) {
+        reach = fmax(reach, column_get(&dst->column[1], 0, d));
+        for (int c = 0; c < w->dim; c++) {
+            lo[c] = fmin(lo[c], column_get(&dst->column[X], (uint32_t)c, d));
+            hi[c] = fmax(hi[c], column_get(&dst->column[X], (uint32_t)c, d));
+        }
+    }
+    for (int c = 0; c < w->dim; c++) {
+        const double gap = fmax(fmax(lo[c] - x[c], x[c] - hi[c]), 0.0);
+        gap2 += gap * gap;
+    }
+    reach *= factor * 1.01;
+    return gap2 <= reach * reach;
+}
+
+/* No ghost is there for nothing. */
+static void check_needed(const struct world *w, const struct particles *p, const struct halo *h,
+                         const struct halo_want *want, size_t n_want, double factor, int rank)
+{
+    for (size_t a = 0; a < ARRAYS; a++)
+        for (size_t q = 0; q < p[a].n_ghost; q++) {
+            const size_t i = (size_t)((int64_t *)p[a].column[5].data)[p[a].n + q];
+            double x[3] = {0.0};
+            int needed = 0;
+            if (!image_place(w, a, i, h->image[a][q], x))
+                continue; /* check_sources says so */
+            for (size_t k = 0; k < n_want; k++)
+                needed = needed ||
+                         (want[k].src == a && may_need(w, &p[want[k].dst], &want[k], i, x, factor));
+            expect(needed, "a ghost that nobody needs", rank, (long)i, h->image[a][q]);
+        }
+}
+
 static int one(const struct world *w, enum partitioner which, struct wire *wire, struct error *e)
 {
     const int rank = wire_rank(wire), ranks = wire_size(wire);
@@ -277,6 +317,7 @@ static int one(const struct world *w, enum partitioner which, struct wire *wire,
             check_values(w, &p[a], a, p[a].n + g, halo.image[a][g], rank);
     for (size_t k = 0; k < 3; k++)
         check_sources(w, p, &halo, &want[k], 1.1, rank);
+    check_needed(w, p, &halo, want, 3, 1.1, rank);
     halo_close(&halo);
     partition_close(part);
     for (size_t a = 0; a < ARRAYS; a++) {

@@ -1,6 +1,6 @@
-"""The domain manager by itself, against all pairs: who needs whom for destinations and sources of several arrays and
-frames, in one to three dimensions, with every kind of side and partitioner; ghosts' values and images; bytes sent
-against bytes foretold (tests/mpi/domain.c), on 1 to 7 ranks."""
+"""The domain manager by itself, against all pairs: who needs whom for destinations and sources of several arrays,
+in one to three dimensions, with every kind of side and partitioner; no ghost that none can need; ghosts' values and
+images; bytes sent against bytes foretold (tests/mpi/domain.c), on 1 to 7 ranks."""
 import os
 import subprocess
 import sys

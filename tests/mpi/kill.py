@@ -56,8 +56,11 @@ def torn(out):
     """The first file that cannot be read to its end."""
     for path in sorted(glob.glob(os.path.join(out, "*.vtkhdf")) + glob.glob(os.path.join(out, "checkpoint_*.h5"))):
         try:
+            read = []
             with h5py.File(path) as file:
-                file.visititems(lambda name, one: isinstance(one, h5py.Dataset) and one[()] is None)
+                file.visititems(lambda name, one: read.append(one[()]) if isinstance(one, h5py.Dataset) else None)
+            if not read:
+                return f"{path}: holds nothing"
         except (OSError, RuntimeError) as error:
             return f"{path}: {error}"
     return ""
@@ -158,9 +161,11 @@ expect("a run that comes to its end needs no earlier one", not os.path.exists(ea
 
 # -- The launcher ------------------------------------------------------------------------------------------------
 
+LONGER = ("--until", "5")
+longer = scenes.good(SCENE, "--strict", *LONGER)
 out = fresh()
-job = run(3, out, SCENE)
-while newest(out) < 10 and job.process.poll() is None and time.monotonic() < job.begin + BOUND:
+job = run(3, out, SCENE, *LONGER)
+while newest(out) < 40 and job.process.poll() is None and time.monotonic() < job.begin + BOUND:
     time.sleep(0.005)
 ranks = job.ranks()
 os.kill(job.process.pid, signal.SIGKILL)
@@ -174,17 +179,18 @@ job.end(BOUND)
 expect("the launcher is killed: nothing is torn", not torn(out), torn(out))
 # A start that is stopped before it has come as far keeps the checkpoint, from which the run goes on to its end.
 step = newest(out)
-job = run(2, out, SCENE)
+job = run(2, out, SCENE, *LONGER)
 earlier = os.path.join(out, "checkpoint_earlier.h5")
 while not os.path.exists(earlier) and job.process.poll() is None and time.monotonic() < job.begin + BOUND:
     time.sleep(0.001)
 for pid in job.ranks().values():
     os.kill(pid, signal.SIGTERM)
 job.end(BOUND)
+expect("a start that has not come as far", newest(out) < step, (newest(out), step))
 if newest(out) < step:
     expect("an earlier checkpoint is kept", os.path.exists(earlier), os.listdir(out))
-    job = run(3, out, "--resume", earlier).end()
-    last = whole.snapshots()[-1]
+    job = run(3, out, "--resume", earlier, *LONGER).end()
+    last = longer.snapshots()[-1]
     one, other = Snapshot(last), Snapshot(os.path.join(out, os.path.basename(last))) if job.returncode == 0 else None
     expect("an earlier checkpoint is gone on from", other and one.step == other.step and all(
         one[key].tobytes() == other[key].tobytes() for key in one.column), job.stderr)

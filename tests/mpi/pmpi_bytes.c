@@ -31,7 +31,8 @@ static void count(int n, MPI_Datatype type, int to, MPI_Comm comm)
     counted[k].bytes += (unsigned long long)n * (unsigned long long)size;
 }
 
-/* All ways in which a message can be sent, so that none escapes. */
+/* The ways in which one message can be sent at once: those that do not last, and are from rank to rank. What calls of all
+ * ranks carry is not counted here. */
 #define SENDS(which)                                                                               \
     int MPI_##which(const void *data, int n, MPI_Datatype type, int to, int tag, MPI_Comm comm)    \
     {                                                                                              \

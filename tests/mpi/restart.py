@@ -178,6 +178,10 @@ cost = loose("a drop", drop, 80, 33, 3)
 expect("particles are sorted", cost["sorts"] > 3, cost)
 loose("a drop in slabs", changed(drop, ranks={"imbalance": 1.0, "partition": "slab"}), 80, 33, 2)
 
+# Its images: other ranks' and its own, edges and corners.
+cost = loose("a box with sides", changed(box, neighbours={"skin": 0.02}, ranks={"imbalance": 1.0}), 40, 1, 2)
+expect("a box with sides: particles are sorted", cost["sorts"] > 1, cost)
+
 # -- What is refused -------------------------------------------------------------------------------
 
 file = written.path("checkpoint_00000019.h5")

@@ -90,7 +90,7 @@ def compare(what, here, there, bar):
 # -- Scenes ----------------------------------------------------------------------------------------------------
 
 noh, drop = quiet(example("noh.json")), quiet(example("drop.json"))
-noh["particles"]["fluid"]["fill"]["spacing"] = 0.05
+noh["particles"]["fluid"]["fill"].update({"spacing": 0.05, "jitter": 0.2})  # else halves never come to differ
 drop["particles"]["drop"]["fill"]["spacing"] = 0.08
 
 halves = box(2, 24, "wcsph", {"x": "periodic", "y": "mirror"})
@@ -120,7 +120,9 @@ CASES = {
 }
 for name, (scene, ranks, steps, precisions) in CASES.items():
     # The domain is cut anew whenever particles are sorted.
-    scene = changed(scene, ranks={"imbalance": 1.0}, neighbours={"skin": 0.01})
+    scene = changed(scene, ranks={"imbalance": 1.0})
+    if name not in ("a lone particle", "frames"):  # what moves in a frozen frame needs its skin
+        scene["neighbours"] = {"skin": 0.01}
     precisions = ("double", "mixed") if LONG and name != "a lone particle" else precisions
     for precision in precisions if part(name) else ():
         options = ("--precision", precision, "--steps", str(steps))
@@ -134,7 +136,7 @@ for name, (scene, ranks, steps, precisions) in CASES.items():
             device = here.summary()["device"]
             expect(f"{name}: devices", len(device["of_ranks"]) == n and device["number"] == device["of_ranks"][0], device)
             a, b = here.summary()["cost"]["list_builds"], there.summary()["cost"]["list_builds"]
-            expect(f"{name}: list builds", name == "frames" or abs(a - b) <= 3, (a, b))
+            expect(f"{name}: list builds", name == "frames" or abs(a - b) <= 3 + 0.1 * b, (a, b))
 
 # -- Which device -----------------------------------------------------------------------------------------------
 

@@ -5,6 +5,8 @@
 #include "neighbours/far.h"
 #include "run/device.h"
 #include "run/frames.h"
+#include <math.h>
+#include <omp.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -112,6 +114,7 @@ int run_domain_open(struct run *r, struct error *e)
         return -1;
     }
     r->domain->wire = wire;
+    r->domain->pace = 1.0;
     /* What cuts the domain does not hear an alarm. */
     const enum partitioner kind = (enum partitioner)r->plan->scene->ranks.partition;
     if (ranks_agree(halo_open(&r->domain->halo, wire, r->plan->n_array, e), e) ||
@@ -150,6 +153,7 @@ void run_domain_close(struct run *r)
 /* What a particle costs beside its pairs, and an image of it: in pairs. */
 #define POINT 20.0f
 #define IMAGE 16.0f
+#define PACE_MOST 10.0 /* by which measured time may change it */
 
 /* Sweeps of an evaluation that walk a list. */
 static size_t sweeps_of(const struct plan *plan, size_t list)
@@ -227,6 +231,7 @@ int run_domain_cost(struct run *r, double *cost, struct error *e)
     if (room_for(d, n, e))
         return -1;
     *cost = 0.0;
+    d->n_weight = n;
     for (size_t a = 0; a < plan->n_array; a++) {
         *cost += weigh(r, a, d->weight + at);
         at += plan->array[a].p.n;
@@ -249,6 +254,34 @@ int run_domain_uneven(struct run *r, bool *uneven, struct error *e)
     if (weigh_all(r, e))
         return -1;
     *uneven = r->domain->imbalance > r->plan->scene->ranks.imbalance;
+    return 0;
+}
+
+/* What this rank has done so far takes that long: seconds but for waiting and files. From some moment on. */
+static double busy_seconds(const struct run *r)
+{
+    return omp_get_wtime() - wire_count(r->domain->wire).seconds - r->cost.io;
+}
+
+/* A rank that takes longer for its share than others for theirs, since particles were weighed before, has particles
+ * that weigh more. What was known counts half: a moment's noise does not move everything. */
+static int pace(struct run *r, double *cost, size_t n, struct error *e)
+{
+    static const uint32_t op[2] = {SPH_REDUCE_SUM, SPH_REDUCE_SUM};
+    struct run_domain *d = r->domain;
+    const double now = busy_seconds(r);
+    double sum[2] = {now - d->busy,
+                     *cost}; /* what it costs now it has cost since then, or nearly */
+    const double mine = sum[1] > 0.0 ? sum[0] / sum[1] : 0.0;
+    if (d->timed && run_share_numbers(r, sum, op, 2, e))
+        return -1;
+    if (d->timed && mine > 0.0 && sum[0] > 0.0 && sum[1] > 0.0)
+        d->pace = fmin(fmax(0.5 * (d->pace + mine * sum[1] / sum[0]), 1.0 / PACE_MOST), PACE_MOST);
+    d->busy = now;
+    d->timed = true;
+    *cost *= d->pace;
+    for (size_t i = 0; i < n; i++)
+        d->weight[i] *= (float)d->pace;
     return 0;
 }
 
@@ -291,6 +324,8 @@ static int balance(struct run *r, struct error *e)
         return -1;
     if (!r->lists_made)
         return 0;
+    if (plan->scene->ranks.by_time && pace(r, &sum, d->n_weight, e))
+        return -1;
     double *const place[3] = {d->place, d->place + d->capacity, d->place + 2 * d->capacity};
     for (size_t a = 0; a < plan->n_array; a++)
         for (size_t i = 0; i < plan->array[a].p.n; i++, at++) {

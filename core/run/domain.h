@@ -24,7 +24,11 @@ struct run_domain {
     int *owner; /* room for as many particles as one asks for at once */
     float *weight;
     double *place;
-    size_t capacity;
+    size_t capacity, n_weight;
+    double pace; /* time a cost of this rank's, over that of all; 1 unless the scene wants time */
+    double
+        busy; /* when particles were last weighed: this rank's seconds until then, but for waiting */
+    bool timed;       /* they were */
     double imbalance; /* of the cost, when particles were last sorted */
     uint64_t moved,
         cuts;       /* particles that have left this rank; how often the domain was cut anew */

@@ -381,8 +381,10 @@ static int compile_neighbours(struct scene *s, const cJSON *node, struct error *
 /* How several processes share the domain. */
 static int compile_ranks(struct scene *s, const cJSON *node, struct error *e)
 {
-    static const char *const keys[] = {"partition", "imbalance"};
+    static const char *const keys[] = {"partition", "imbalance", "weights"};
     static const char *const words[] = {"rcb", "rib", "hsfc", "slab"};
+    static const char *const weights[] = {"pairs", "time"};
+    size_t by_time = 0;
     s->ranks.partition = 0;
     s->ranks.imbalance = 1.01;
     if (!node)
@@ -390,8 +392,11 @@ static int compile_ranks(struct scene *s, const cJSON *node, struct error *e)
     if (json_keys(s->doc, node, keys, COUNT(keys), e) < 0 ||
         scene_word(s, node, "partition", "way to cut the domain", words, COUNT(words),
                    &s->ranks.partition, e) < 0 ||
-        json_number(s->doc, node, "imbalance", false, &s->ranks.imbalance, e) < 0)
+        json_number(s->doc, node, "imbalance", false, &s->ranks.imbalance, e) < 0 ||
+        scene_word(s, node, "weights", "way to weigh particles", weights, COUNT(weights), &by_time,
+                   e) < 0)
         return -1;
+    s->ranks.by_time = by_time == 1;
     if (s->ranks.imbalance < 1.0)
         return document_fail(s->doc, json_get(node, "imbalance"), e,
                              "%.15g is no bound: the largest share is never less than the mean, 1",

@@ -255,7 +255,8 @@ struct scene {
         size_t partition; /* by domain/partition.h: 0 "rcb", 1 "rib", 2 "hsfc", 3 "slab" */
         double
             imbalance; /* largest share of a rank over the mean, from which the domain is cut anew */
-    } ranks;           /* optional key "ranks": {"partition": "rcb", "imbalance": 1.01} */
+        bool by_time;  /* particles weigh by the time that their rank took for its share */
+    } ranks; /* optional key "ranks": {"partition": "rcb", "imbalance": 1.01, "weights": "pairs"} */
     const char *precision; /* "double", "mixed", "single"; NULL: the scheme's */
     /* The command line's, as `precision` may be. */
     struct {

@@ -80,6 +80,8 @@ static inline void halo_count(struct halo *h, const struct wire_count *before)
     h->sent.messages += now.messages - before->messages;
     h->sent.bytes += now.bytes - before->bytes;
 }
+/* Room for the messages to and from a peer, whatever is in them. */
+int halo_room(struct halo_peer *q, size_t out, size_t in, struct error *e);
 /* Bytes that an exchange of these sends. */
 size_t halo_bytes(const struct halo *h, const struct halo_column *c, size_t n);
 /* All of them in one message to each rank. Between the two, neither the columns nor the halo may change. */

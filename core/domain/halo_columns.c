@@ -87,6 +87,11 @@ static int room(char **data, size_t *capacity, size_t bytes, struct error *e)
     return error_memory(e, "messages", bytes);
 }
 
+int halo_room(struct halo_peer *q, size_t out, size_t in, struct error *e)
+{
+    return room(&q->out, &q->out_capacity, out, e) || room(&q->in, &q->in_capacity, in, e) ? -1 : 0;
+}
+
 int halo_begin(struct halo *h, const struct box *box, const struct halo_column *c, size_t n,
                struct error *e)
 {
@@ -99,7 +104,7 @@ int halo_begin(struct halo *h, const struct box *box, const struct halo_column *
             out += block(column, q->part[c[i].array].n_send);
             in += block(column, q->part[c[i].array].n_receive);
         }
-        if (room(&q->out, &q->out_capacity, out, e) || room(&q->in, &q->in_capacity, in, e))
+        if (halo_room(q, out, in, e))
             return -1;
         char *at = q->out;
         for (size_t i = 0; i < n; i++) {

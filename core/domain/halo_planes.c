@@ -20,19 +20,6 @@ size_t halo_received(const struct halo *h, size_t array)
     return n;
 }
 
-static int room(char **data, size_t *capacity, size_t bytes, struct error *e)
-{
-    if (bytes <= *capacity)
-        return 0;
-    free(*data);
-    *capacity = bytes + bytes / 8;
-    *data = malloc(*capacity);
-    if (*data)
-        return 0;
-    *capacity = 0;
-    return error_memory(e, "messages", bytes);
-}
-
 /* The message to peer k: of each plane the peer's part. */
 static void fill(struct halo *h, size_t k, const struct halo_plane *p, size_t n)
 {
@@ -71,7 +58,7 @@ int halo_trade(struct halo *h, const struct halo_plane *p, size_t n, struct erro
             out += q->part[p[i].array].n_send * p[i].size;
             in += q->part[p[i].array].n_receive * p[i].size;
         }
-        if (room(&q->out, &q->out_capacity, out, e) || room(&q->in, &q->in_capacity, in, e))
+        if (halo_room(q, out, in, e))
             return -1;
         fill(h, k, p, n);
         h->parcel[k] = (struct parcel){q->rank, q->out, out};

@@ -257,10 +257,21 @@ int run_domain_uneven(struct run *r, bool *uneven, struct error *e)
     return 0;
 }
 
-/* What this rank has done so far takes that long: seconds but for waiting and files. From some moment on. */
-static double busy_seconds(const struct run *r)
+/* A clock that stands still while this rank waits for others. */
+static double clock_of(const struct run *r)
 {
-    return omp_get_wtime() - wire_count(r->domain->wire).seconds - r->cost.io;
+    return omp_get_wtime() - wire_count(r->domain->wire).seconds;
+}
+
+void run_domain_step(struct run *r, bool begins)
+{
+    struct run_domain *d = r->domain;
+    if (!d)
+        return;
+    if (begins)
+        d->idle += clock_of(r) - d->ended;
+    else
+        d->ended = clock_of(r);
 }
 
 /* A rank that takes longer for its share than others for theirs, since particles were weighed before, has particles
@@ -269,15 +280,15 @@ static int pace(struct run *r, double *cost, size_t n, struct error *e)
 {
     static const uint32_t op[2] = {SPH_REDUCE_SUM, SPH_REDUCE_SUM};
     struct run_domain *d = r->domain;
-    const double now = busy_seconds(r);
-    double sum[2] = {now - d->busy,
-                     *cost}; /* what it costs now it has cost since then, or nearly */
+    const double busy = clock_of(r) - d->idle;
+    /* What it costs now it has cost since then, or nearly. */
+    double sum[2] = {busy - d->busy, *cost};
     const double mine = sum[1] > 0.0 ? sum[0] / sum[1] : 0.0;
     if (d->timed && run_share_numbers(r, sum, op, 2, e))
         return -1;
     if (d->timed && mine > 0.0 && sum[0] > 0.0 && sum[1] > 0.0)
         d->pace = fmin(fmax(0.5 * (d->pace + mine * sum[1] / sum[0]), 1.0 / PACE_MOST), PACE_MOST);
-    d->busy = now;
+    d->busy = busy;
     d->timed = true;
     *cost *= d->pace;
     for (size_t i = 0; i < n; i++)
@@ -518,7 +529,8 @@ int run_domain_begin(struct run *r, struct error *e)
     if (halo_begin(&d->halo, &r->plan->scene->box, d->column, d->n_column, e))
         return -1;
     for (size_t k = 0; k < d->n_column; k++) {
-        run_refresh_images(r, d->column[k].array, d->column[k].column);
+        const struct halo_column *c = &d->column[k];
+        ghosts_refresh(&r->ghosts[c->array], &r->plan->scene->box, c->p, c->column);
         run_domain_poke(r);
     }
     return 0;

@@ -26,9 +26,10 @@ struct run_domain {
     double *place;
     size_t capacity, n_weight;
     double pace; /* time a cost of this rank's, over that of all; 1 unless the scene wants time */
-    double
-        busy; /* when particles were last weighed: this rank's seconds until then, but for waiting */
-    bool timed;       /* they were */
+    /* Of a clock that stands while this rank waits: how long no step was on, when the last one ended, and what steps
+     * had taken when particles were last weighed. */
+    double idle, ended, busy;
+    bool timed;       /* particles have been weighed so */
     double imbalance; /* of the cost, when particles were last sorted */
     uint64_t moved,
         cuts;       /* particles that have left this rank; how often the domain was cut anew */
@@ -48,6 +49,8 @@ void run_domain_close(struct run *r);
 /* After lists have been made for the first time, by what is known of their length: whether the particles had
  * better be moved at once. */
 int run_domain_uneven(struct run *r, bool *uneven, struct error *e);
+/* A step begins, or has ended: what comes in between takes no part in what particles cost. */
+void run_domain_step(struct run *r, bool begins);
 /* Particles go to where their places belong. */
 int run_domain_move(struct run *r, struct error *e);
 /* Ghosts of what this rank's lists may reach: room for them, and who they are; of their columns positions and

@@ -549,13 +549,6 @@ int run_lists_again(struct run *r, const struct particles *was, bool counted, st
     return status;
 }
 
-void run_refresh_images(struct run *r, size_t array, int column)
-{
-    const double begin = omp_get_wtime();
-    ghosts_refresh(&r->ghosts[array], &r->plan->scene->box, &r->plan->array[array].p, column);
-    r->cost.neighbour += omp_get_wtime() - begin;
-}
-
 int run_refresh_ask(struct run *r, size_t array, int column, struct error *e)
 {
     if (!r->stale[array][column])
@@ -563,7 +556,9 @@ int run_refresh_ask(struct run *r, size_t array, int column, struct error *e)
     r->stale[array][column] = false;
     if (r->domain)
         return run_domain_ask(r, array, column, e);
-    run_refresh_images(r, array, column);
+    const double begin = omp_get_wtime();
+    ghosts_refresh(&r->ghosts[array], &r->plan->scene->box, &r->plan->array[array].p, column);
+    r->cost.neighbour += omp_get_wtime() - begin;
     return 0;
 }
 

@@ -115,6 +115,7 @@ static int one_step(struct loop *l, struct error *e)
         return -1;
     r->dt = dt;
     loop_ranks_step_begins(&l->ranks);
+    run_domain_step(r, true);
     double goal = target(l);
     bool reaches = !(r->time + dt < goal);
     r->look = is_logged(l, r->step + 1, r->time + dt);
@@ -125,6 +126,7 @@ static int one_step(struct loop *l, struct error *e)
         r->time = goal; /* not a rounding beside it */
     r->step++;
     loop_ranks_step_ends(&l->ranks);
+    run_domain_step(r, false);
     r->cost.particle_updates += particles_total(r->plan);
     return 0;
 }
@@ -356,7 +358,7 @@ int loop_run(struct plan *plan, const struct output *out, const struct loop_opti
     progress_end(&l.progress);
     if (!status)
         status = run_domain_agree(&l.run, tell(&l, e), e);
-    if (status && l.run.plan && can_keep(&l)) {
+    if (status && !l.refused && can_keep(&l)) {
         if (!l.run.domain) /* else its rank has said it */
             tell_device(&l, e);
         keep_failed(&l, e);

@@ -123,8 +123,11 @@ static int refresh_all(struct run *r, const struct pass *p, struct error *e)
             if (column >= 0 && run_refresh_ask(r, p->src[s].array, column, e))
                 return -1;
         }
+    const double begin = omp_get_wtime();
     if (run_domain_begin(r, e))
         return -1;
+    if (r->domain) /* as where there are only images */
+        r->cost.neighbour += omp_get_wtime() - begin;
     return p->shape == SPH_PAIR ? mirrors(r, p, e) : 0;
 }
 

@@ -122,10 +122,9 @@ static int keep_order(const struct plan *plan, uint32_t *path, struct error *e)
 int run_init(struct run *r, struct plan *plan, int threads, uint32_t path, bool audit,
              struct error *e)
 {
-    if (keep_order(plan, &path, e))
-        return -1;
     /* Until there is a domain nobody would hear an alarm. */
-    if (run_domain_agree(r, room_for(r, plan, threads, path, e), e))
+    const int status = keep_order(plan, &path, e) || room_for(r, plan, threads, path, e) ? -1 : 0;
+    if (run_domain_agree(r, status, e))
         return -1;
     if (run_domain_open(r, e) || hold(plan, e) || watch_open(r, e))
         return -1;

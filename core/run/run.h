@@ -106,8 +106,6 @@ struct skin_change run_change(const struct run *r, size_t array, size_t first, s
 int run_refresh(struct run *r, size_t array, int column, struct error *e);
 /* The same, on several ranks with the next run_domain_begin: together with others that are asked for. */
 int run_refresh_ask(struct run *r, size_t array, int column, struct error *e);
-/* Of images of own particles only. */
-void run_refresh_images(struct run *r, size_t array, int column);
 /* The places of an array's real particles in a frame. */
 struct cloud run_cloud(const struct run *r, size_t array, size_t frame);
 /* A column was written: what copies it is old. */

@@ -22,16 +22,17 @@ int shared_text(const struct run *r, char **text, struct error *e)
 int shared_file_begin(struct run *r, const struct output *o, const char *name, char **temporary,
                       struct error *e)
 {
+    uint64_t nobody = 0;
     *temporary = run_speaks(r) ? output_begin(o, name) : NULL;
-    const int status = run_speaks(r) && !*temporary ? error_memory(e, "a path", strlen(name))
-                                                    : shared_text(r, temporary, e);
-    /* Nobody goes on before all have the name: what fails then is of the file. */
-    if (run_domain_agree(r, status, e)) {
+    if (run_speaks(r) && !*temporary)
+        return error_memory(e, "a path", strlen(name));
+    if (shared_text(r, temporary, e) || run_share_count(r, &nobody, e)) {
         free(*temporary);
         *temporary = NULL;
         return -1;
     }
-    return 0;
+    /* Through the sum everybody has come. Nobody goes on, and may fail, before all have seen that. */
+    return run_domain_agree(r, 0, e);
 }
 
 int shared_file_end(struct run *r, const struct output *o, char *temporary, const char *name,

@@ -235,6 +235,20 @@ if part("disk"):
         job.begin = time.monotonic()
     ended("a full disk", job, 1, "rank 0: cannot write ", out, out=out)
 
+    # One that fails as files are made safe: at the end of a snapshot or a checkpoint, which only one rank does.
+    library = os.path.join(BUILD, "tests", "mpi", ".libs", "no_sync.so")
+    fail = wrapper(SCRATCH, "fail.sh", f'[ $rank != 0 ] || export LD_PRELOAD="{library} $LD_PRELOAD"')
+    scene = changed(LONG, time={"end": 0.12}, output={"picture": False, "every": 0.05, "checkpoint": {"steps": 5}})
+    failed = 0
+    for call in range(1, 9):
+        out = fresh()
+        job = Job(3, fail, SPH, scenes.write(scene), "--out", out, *FEW, env={"SPH_NO_SYNC": str(call)}).end(BOUND)
+        print(f"fsync {call} fails: exit code {job.returncode}, {job.seconds:.1f} s, {job.said}")
+        failed += job.returncode == 1
+        expect(f"fsync {call} fails: all end, with one sentence", job.returncode == 1 and len(job.said) == 1, job.stderr)
+        expect(f"fsync {call} fails: nothing is half written", not whole(out), whole(out))
+    expect("a disk that fails: it matters", failed > 4, failed)
+
 # -- Signals -----------------------------------------------------------------------------------------------------
 
 

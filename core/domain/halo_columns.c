@@ -47,7 +47,7 @@ static void pack_column(const struct halo_part *p, const struct box *box, int di
 {
     const size_t n = p->n_send;
     const struct column to = in_message(c, at, n);
-    for (uint32_t q = 0; q < c->ncomp; q++) {
+    for (uint32_t q = 0; n > 0 && q < c->ncomp; q++) {
         copy((char *)to.data + q * n * c->size, (const char *)c->data + q * c->plane * c->size,
              c->size, p->send, n);
         if (c->low)
@@ -65,7 +65,7 @@ static void unpack_column(const struct halo_part *p, size_t n_real, const struct
                           const char *at)
 {
     const size_t n = p->n_receive, first = n_real + p->first;
-    for (uint32_t q = 0; q < c->ncomp; q++) {
+    for (uint32_t q = 0; n > 0 && q < c->ncomp; q++) {
         memcpy((char *)c->data + (q * c->plane + first) * c->size, at + q * n * c->size,
                n * c->size);
         if (c->low)

@@ -134,6 +134,7 @@ def strong(bench, options):
 
 
 BAR = 1.85  # two ranks against one, on a machine of two cores
+KNOWN = "MISS (known: 1.70 to 1.81 where steps' lengths vary by a tenth and each step waits for the slower rank)"
 
 
 def bar(runs):
@@ -143,7 +144,7 @@ def bar(runs):
     of_apart = statistics.median(a["seconds"] / a["n"] * b["n"] / b["seconds"] for a, b in zip(runs[APART, 1], runs[2, 1]))
     reached = statistics.median(ratios)
     print(f"two ranks: {reached:.3f} times one ({ratios[0]:.3f} to {ratios[-1]:.3f}), at least {BAR}:"
-          f" {'OK' if reached >= BAR else 'MISS'}; {of_apart:.1%} of {CORES} processes apart", flush=True)
+          f" {'OK' if reached >= BAR else KNOWN}; {of_apart:.1%} of {CORES} processes apart", flush=True)
 
 
 def weak(bench, options, each):

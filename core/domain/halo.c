@@ -128,17 +128,23 @@ static struct tile tile_image(const struct box *box, struct tile t, unsigned cod
     return t;
 }
 
-/* Whether sources in a box may be within reach of destinations in another. */
-static bool near(const struct tile *src, const struct tile *dst, bool symmetric)
+/* Whether sources from lo to hi, that reach so far, may be within reach of destinations in a box. */
+static inline bool box_near(const double *lo, const double *hi, double reach,
+                            const struct tile *dst, bool symmetric)
 {
-    const double reach = symmetric && src->reach > dst->reach ? src->reach : dst->reach;
     double gap2 = 0.0;
+    reach = symmetric && reach > dst->reach ? reach : dst->reach;
     for (int a = 0; a < 3; a++) {
-        const double below = dst->lo[a] - src->hi[a], above = src->lo[a] - dst->hi[a];
+        const double below = dst->lo[a] - hi[a], above = lo[a] - dst->hi[a];
         const double gap = below > above ? below : above;
         gap2 += gap > 0.0 ? gap * gap : 0.0;
     }
     return gap2 <= reach * reach; /* of empty ones gaps are infinite */
+}
+
+static bool near(const struct tile *src, const struct tile *dst, bool symmetric)
+{
+    return box_near(src->lo, src->hi, src->reach, dst, symmetric);
 }
 
 /* All codes of images that there are, 0 first; how many: 27 at most. */
@@ -347,19 +353,6 @@ static struct point point_at(const struct making *m, const struct cloud *c, size
     return p;
 }
 
-/* Whether it may be within reach of destinations in a box. */
-static inline bool point_near(const struct point *p, const struct tile *dst, bool symmetric)
-{
-    const double reach = symmetric && p->reach > dst->reach ? p->reach : dst->reach;
-    double gap2 = 0.0;
-    for (int a = 0; a < 3; a++) {
-        const double below = dst->lo[a] - p->x[a], above = p->x[a] - dst->hi[a];
-        const double gap = below > above ? below : above;
-        gap2 += gap > 0.0 ? gap * gap : 0.0;
-    }
-    return gap2 <= reach * reach;
-}
-
 static bool wanted(const struct making *m, const struct candidates *c, size_t i, unsigned code)
 {
     struct point p = {{0.0}, 0.0};
@@ -367,7 +360,7 @@ static bool wanted(const struct making *m, const struct candidates *c, size_t i,
         const struct halo_want *w = c->want[k];
         if (k == 0 || w != c->want[k - 1])
             p = point_at(m, cloud_at(m, w->frame, w->src), i, code);
-        if (point_near(&p, c->tile[k], w->symmetric))
+        if (box_near(p.x, p.x, p.reach, c->tile[k], w->symmetric))
             return true;
     }
     return false;

@@ -73,12 +73,13 @@ struct halo_column {
     size_t array;
     int column;
 };
-/* What was sent since then was columns. */
-static inline void halo_count(struct halo *h, const struct wire_count *before)
+/* Adds what was sent since then. */
+static inline void halo_count(const struct wire *w, struct halo_sent *to,
+                              const struct wire_count *before)
 {
-    const struct wire_count now = wire_count(h->wire);
-    h->sent.messages += now.messages - before->messages;
-    h->sent.bytes += now.bytes - before->bytes;
+    const struct wire_count now = wire_count(w);
+    to->messages += now.messages - before->messages;
+    to->bytes += now.bytes - before->bytes;
 }
 /* Room for the messages to and from a peer, whatever is in them. */
 int halo_room(struct halo_peer *q, size_t out, size_t in, struct error *e);

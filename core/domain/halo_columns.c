@@ -118,7 +118,7 @@ int halo_begin(struct halo *h, const struct box *box, const struct halo_column *
     }
     const struct wire_count before = wire_count(h->wire);
     const int status = wire_begin(h->wire, h->parcel, h->n_peer, receive, h->n_peer, e);
-    halo_count(h, &before);
+    halo_count(h->wire, &h->sent, &before);
     return status;
 }
 

@@ -67,7 +67,7 @@ int halo_trade(struct halo *h, const struct halo_plane *p, size_t n, struct erro
     const struct wire_count before = wire_count(h->wire);
     if (wire_begin(h->wire, h->parcel, h->n_peer, receive, h->n_peer, e) || wire_finish(h->wire, e))
         return -1;
-    halo_count(h, &before);
+    halo_count(h->wire, &h->sent, &before);
     for (size_t k = 0; k < h->n_peer; k++)
         take(h, k, p, n);
     return 0;

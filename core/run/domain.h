@@ -24,7 +24,7 @@ struct run_domain {
     int *owner; /* room for as many particles as one asks for at once */
     float *weight;
     double *place;
-    size_t capacity, n_weight;
+    size_t capacity;
     double pace; /* time a cost of this rank's, over that of all; 1 unless the scene wants time */
     /* Of a clock that stands while this rank waits: how long no step was on, when the last one ended, and what steps
      * had taken when particles were last weighed. */
@@ -46,6 +46,8 @@ static inline bool run_shared(const struct run *r)
 /* Every rank has been given all particles: cuts the domain and keeps this rank's. */
 int run_domain_open(struct run *r, struct error *e);
 void run_domain_close(struct run *r);
+/* A part of it: the first cuts, by places alone. domain_cuts.c, as all until particles move. */
+int run_domain_cut(struct run *r, struct error *e);
 /* After lists have been made for the first time, by what is known of their length: whether the particles had
  * better be moved at once. */
 int run_domain_uneven(struct run *r, bool *uneven, struct error *e);
